@@ -1,0 +1,36 @@
+//! Words and geometry of motion: limits, toolpaths, corners, timed pieces, and the judge.
+//!
+//! Everything is in mm, s and rad; coordinates are one per axis in path order. This crate plans
+//! nothing: it holds what every method speaks of, and [`verify`](mod@verify), which judges any of
+//! them.
+
+pub mod numeric;
+pub mod vector;
+
+mod arc;
+mod corner;
+mod error;
+mod limits;
+mod machine;
+mod piece;
+mod plan;
+mod planner;
+mod pose;
+mod sample;
+mod tolerance;
+mod toolpath;
+
+pub use arc::Arc;
+pub use corner::Corner;
+pub use error::{LimitsError, ToolpathError};
+pub use limits::{AxisLimits, Limits, Tangential, largest_multiple};
+pub use machine::{Axis, AxisKind, AxisVector, KinematicsError, MachineKinematics};
+pub use nalgebra;
+pub use piece::{Piece, Serves};
+pub use plan::{Plan, Sampler, Trajectory};
+pub use planner::{MotionPlanner, PlanError};
+pub use pose::ToolPose;
+pub use sample::{Sample, SamplePeriod};
+pub use tolerance::{Feedrate, Tolerance};
+pub use toolpath::{Move, Path, Toolpath, check_contact};
+pub use vector::Vector;

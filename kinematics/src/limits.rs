@@ -1,0 +1,193 @@
+//! Limits of velocity, acceleration and jerk, per axis.
+//!
+//! Source: section 2.2; the projection on a direction replaces the case tables of sections 2.3
+//! and 3.2. Not here: travel, which belongs to a machine.
+
+use crate::error::LimitsError;
+use crate::vector::Vector;
+
+/// The limits of one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisLimits {
+    velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+}
+
+impl AxisLimits {
+    /// Limits of velocity, acceleration and jerk, each positive and finite.
+    ///
+    /// # Errors
+    /// [`LimitsError::NotPositive`] names the first quantity that is not.
+    ///
+    /// # Examples
+    /// ```
+    /// use toolglide_kinematics::AxisLimits;
+    /// assert!(AxisLimits::new(500.0, 2_000.0, 5e4).is_ok());
+    /// assert!(AxisLimits::new(500.0, 0.0, 5e4).is_err());
+    /// ```
+    pub fn new(velocity: f64, acceleration: f64, jerk: f64) -> Result<Self, LimitsError> {
+        for (quantity, value) in [
+            ("velocity", velocity),
+            ("acceleration", acceleration),
+            ("jerk", jerk),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(LimitsError::NotPositive { quantity, value });
+            }
+        }
+        Ok(Self {
+            velocity,
+            acceleration,
+            jerk,
+        })
+    }
+
+    /// Largest velocity.
+    #[must_use]
+    pub fn velocity(&self) -> f64 {
+        self.velocity
+    }
+
+    /// Largest acceleration.
+    #[must_use]
+    pub fn acceleration(&self) -> f64 {
+        self.acceleration
+    }
+
+    /// Largest jerk.
+    #[must_use]
+    pub fn jerk(&self) -> f64 {
+        self.jerk
+    }
+}
+
+/// The limits of all axes, in path order.
+///
+/// Velocity, acceleration and jerk are kept as vectors because planners ask how much of each a
+/// direction may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits<const N: usize> {
+    velocity: Vector<N>,
+    acceleration: Vector<N>,
+    jerk: Vector<N>,
+}
+
+impl<const N: usize> Limits<N> {
+    /// Limits from one [`AxisLimits`] per axis.
+    #[must_use]
+    pub fn new(axes: [AxisLimits; N]) -> Self {
+        Self {
+            velocity: Vector::from_fn(|axis, _| axes[axis].velocity),
+            acceleration: Vector::from_fn(|axis, _| axes[axis].acceleration),
+            jerk: Vector::from_fn(|axis, _| axes[axis].jerk),
+        }
+    }
+
+    /// The same limits for every axis.
+    ///
+    /// # Errors
+    /// As [`AxisLimits::new`].
+    pub fn uniform(velocity: f64, acceleration: f64, jerk: f64) -> Result<Self, LimitsError> {
+        Ok(Self::new(
+            [AxisLimits::new(velocity, acceleration, jerk)?; N],
+        ))
+    }
+
+    /// Largest velocity of each axis.
+    #[must_use]
+    pub fn velocity(&self) -> &Vector<N> {
+        &self.velocity
+    }
+
+    /// Largest acceleration of each axis.
+    #[must_use]
+    pub fn acceleration(&self) -> &Vector<N> {
+        &self.acceleration
+    }
+
+    /// Largest jerk of each axis.
+    #[must_use]
+    pub fn jerk(&self) -> &Vector<N> {
+        &self.jerk
+    }
+
+    /// The limits of a motion along `direction` (a unit vector): exact, because such a motion moves
+    /// each axis by its share of the direction.
+    #[must_use]
+    pub fn along(&self, direction: &Vector<N>) -> Tangential {
+        Tangential {
+            velocity: largest_multiple(direction, &self.velocity),
+            acceleration: largest_multiple(direction, &self.acceleration),
+            jerk: largest_multiple(direction, &self.jerk),
+        }
+    }
+}
+
+/// Limits of velocity, acceleration and jerk of a motion along one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangential {
+    /// Largest speed.
+    pub velocity: f64,
+    /// Largest acceleration.
+    pub acceleration: f64,
+    /// Largest jerk.
+    pub jerk: f64,
+}
+
+/// Largest factor by which `vector` may be multiplied so that no axis exceeds its bound; infinite
+/// for the zero vector.
+#[must_use]
+pub fn largest_multiple<const N: usize>(vector: &Vector<N>, bound: &Vector<N>) -> f64 {
+    let mut factor = f64::INFINITY;
+    for axis in 0..N {
+        let magnitude = vector[axis].abs();
+        if magnitude > 0.0 {
+            factor = factor.min(bound[axis] / magnitude);
+        }
+    }
+    factor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_diagonal_may_use_more_than_either_axis() {
+        let limits = Limits::<2>::uniform(100.0, 1000.0, 1e4).unwrap();
+        let diagonal = Vector::<2>::new(1.0, 1.0).normalize();
+        let along = limits.along(&diagonal);
+        assert!(
+            (along.velocity - 100.0 * 2.0_f64.sqrt()).abs() < 1e-10,
+            "{along:?}"
+        );
+    }
+
+    #[test]
+    fn a_resting_axis_does_not_limit() {
+        let limits = Limits::new([
+            AxisLimits::new(100.0, 1000.0, 1e4).unwrap(),
+            AxisLimits::new(1.0, 1.0, 1.0).unwrap(),
+        ]);
+        assert!(
+            (limits.along(&Vector::<2>::x()).jerk - 1e4).abs() < 1e-9,
+            "x alone"
+        );
+    }
+
+    #[test]
+    fn nan_and_infinity_are_refused() {
+        for value in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+            assert!(
+                AxisLimits::new(value, 1.0, 1.0).is_err(),
+                "velocity {value}"
+            );
+            assert!(
+                AxisLimits::new(1.0, value, 1.0).is_err(),
+                "acceleration {value}"
+            );
+            assert!(AxisLimits::new(1.0, 1.0, value).is_err(), "jerk {value}");
+        }
+    }
+}

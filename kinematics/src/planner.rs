@@ -1,0 +1,54 @@
+//! The seam between a stream of moves and a stream of motion.
+//!
+//! Source: the look-ahead windowing of section 3.3 plans while it reads. Not here: any method.
+
+use crate::error::ToolpathError;
+use crate::piece::Piece;
+use crate::toolpath::Move;
+
+/// Plans motion while the path is still being read.
+///
+/// Moves are pushed in path order, pieces are pulled in motion order. Whoever pulls until `None`
+/// after each push holds no more than the planner's window.
+pub trait MotionPlanner<const N: usize> {
+    /// Takes the next move of the path.
+    ///
+    /// # Errors
+    /// [`PlanError`] when the move cannot follow; the motion planned before stays valid.
+    fn push(&mut self, next: &Move<N>) -> Result<(), PlanError>;
+
+    /// Says that no move follows: the motion comes to rest at the end of the last one.
+    ///
+    /// # Errors
+    /// [`PlanError`] as for `push`.
+    fn finish(&mut self) -> Result<(), PlanError>;
+
+    /// The next piece of finished motion: in order, contiguous, never taken back.
+    fn pull(&mut self) -> Option<Piece<N>>;
+}
+
+/// Why a planner cannot take a move.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The move does not connect to the path.
+    #[error("move {index}: {reason}")]
+    Path {
+        /// The move, counted from 0.
+        index: u32,
+        /// What is wrong.
+        reason: ToolpathError,
+    },
+    /// A move came after the end was announced.
+    #[error("move {index}: it comes after the end of the path")]
+    Finished {
+        /// The move, counted from 0.
+        index: u32,
+    },
+    /// More moves than can be counted.
+    #[error("move {index}: a path may have no more moves")]
+    TooMany {
+        /// The move, counted from 0.
+        index: u32,
+    },
+}
