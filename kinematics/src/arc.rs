@@ -242,7 +242,7 @@ mod tests {
     fn the_ends_are_exact_and_the_tangent_is_the_derivative() {
         let helix = Arc::about(
             Vector::<3>::new(3.0, 1.0, 0.0),
-            Vector::<3>::new(1.0, 3.01, 2.0),
+            Vector::<3>::new(1.0, 3.004, 2.0),
             Vector::<3>::new(1.0, 1.0, 9.0),
             [0, 1],
             true,
