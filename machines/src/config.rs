@@ -1,0 +1,234 @@
+//! What a machine file says, checked field by field.
+//!
+//! Source: the fields of [`toolglide_kinematics::Axis`]. Not here: which axes a model needs, which
+//! the model itself checks.
+
+use crate::error::MachineError;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toolglide_kinematics::{Axis, AxisKind, AxisLimits, SamplePeriod, Tolerance};
+
+/// Tolerance where a machine file names none, mm: fine milling.
+const DEFAULT_TOLERANCE: f64 = 0.01;
+
+/// Period of the set-points where a machine file names none, s: what most drives take.
+const DEFAULT_PERIOD: f64 = 0.001;
+
+/// What is asked of every limit, tolerance and period.
+const POSITIVE: &str = "positive and finite";
+
+/// A machine: its model, its axes in machine order, and how it is used where nobody says otherwise.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MachineConfig {
+    /// Model of the machine, such as "gantry".
+    pub model: String,
+    /// Name of this machine.
+    pub name: String,
+    /// Corner tolerance where a program asks for none, mm.
+    #[serde(default = "default_tolerance")]
+    #[schemars(range(min = 0.0))]
+    pub tolerance_mm: f64,
+    /// Time between two set-points, s.
+    #[serde(default = "default_period")]
+    #[schemars(range(min = 0.0))]
+    pub period_s: f64,
+    /// Distances in the structure of the machine that its model asks for, mm.
+    #[serde(default)]
+    pub geometry: BTreeMap<String, f64>,
+    /// The axes, in machine order.
+    pub axis: Vec<AxisConfig>,
+}
+
+/// One axis. Limits and travel are in mm for a linear axis and in degrees for a rotary one.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisConfig {
+    /// Letter of the axis, as programs write it.
+    pub name: char,
+    /// Largest velocity, mm/s or degrees/s.
+    #[schemars(range(min = 0.0))]
+    pub velocity: f64,
+    /// Largest acceleration, mm/s² or degrees/s².
+    #[schemars(range(min = 0.0))]
+    pub acceleration: f64,
+    /// Largest jerk, mm/s³ or degrees/s³.
+    #[schemars(range(min = 0.0))]
+    pub jerk: f64,
+    /// Lowest and highest position, mm or degrees; an axis without travel has no ends.
+    pub travel: Option<[f64; 2]>,
+}
+
+fn default_tolerance() -> f64 {
+    DEFAULT_TOLERANCE
+}
+
+fn default_period() -> f64 {
+    DEFAULT_PERIOD
+}
+
+impl MachineConfig {
+    /// A machine of these axes with the usual tolerance and period.
+    #[must_use]
+    pub fn new(model: &str, name: &str, axis: Vec<AxisConfig>) -> Self {
+        Self {
+            model: model.to_owned(),
+            name: name.to_owned(),
+            tolerance_mm: DEFAULT_TOLERANCE,
+            period_s: DEFAULT_PERIOD,
+            geometry: BTreeMap::new(),
+            axis,
+        }
+    }
+
+    /// The tolerance where a program asks for none.
+    ///
+    /// # Errors
+    /// [`MachineError::Field`] unless it is positive and finite.
+    pub fn tolerance(&self) -> Result<Tolerance, MachineError> {
+        Tolerance::new(self.tolerance_mm)
+            .map_err(|_| MachineError::field("tolerance_mm", self.tolerance_mm, POSITIVE))
+    }
+
+    /// The period of the set-points.
+    ///
+    /// # Errors
+    /// [`MachineError::Field`] unless it is positive and finite.
+    pub fn period(&self) -> Result<SamplePeriod, MachineError> {
+        SamplePeriod::new(self.period_s)
+            .map_err(|_| MachineError::field("period_s", self.period_s, POSITIVE))
+    }
+
+    /// Letters of the axes, in machine order, as in "XYZ".
+    #[must_use]
+    pub fn letters(&self) -> String {
+        self.axis.iter().map(|axis| axis.name).collect()
+    }
+}
+
+impl AxisConfig {
+    /// An axis without ends.
+    #[must_use]
+    pub fn new(name: char, velocity: f64, acceleration: f64, jerk: f64) -> Self {
+        Self {
+            name,
+            velocity,
+            acceleration,
+            jerk,
+            travel: None,
+        }
+    }
+
+    /// The axis as one that moves in mm.
+    ///
+    /// # Errors
+    /// [`MachineError::Field`] names the limit or travel that it must not have.
+    pub fn linear(&self) -> Result<Axis, MachineError> {
+        self.checked(AxisKind::Linear, 1.0)
+    }
+
+    /// The axis as one that turns: degrees in the file, rad from here on.
+    ///
+    /// # Errors
+    /// As [`AxisConfig::linear`].
+    pub fn rotary(&self) -> Result<Axis, MachineError> {
+        self.checked(AxisKind::Rotary, 1.0_f64.to_radians())
+    }
+
+    fn checked(&self, kind: AxisKind, unit: f64) -> Result<Axis, MachineError> {
+        for (quantity, value) in [
+            ("velocity", self.velocity),
+            ("acceleration", self.acceleration),
+            ("jerk", self.jerk),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(self.refuse(quantity, value, POSITIVE));
+            }
+        }
+        let limits = AxisLimits::new(
+            self.velocity * unit,
+            self.acceleration * unit,
+            self.jerk * unit,
+        )
+        .map_err(|refused| self.refuse("a limit", refused, POSITIVE))?;
+        let travel = match self.travel {
+            Some([low, high]) if low < high && low.is_finite() && high.is_finite() => {
+                Some((low * unit, high * unit))
+            }
+            Some([low, high]) => {
+                return Err(self.refuse(
+                    "travel",
+                    format!("[{low}, {high}]"),
+                    "two finite numbers, the lower first",
+                ));
+            }
+            None => None,
+        };
+        Ok(Axis {
+            name: self.name,
+            kind,
+            limits,
+            travel,
+        })
+    }
+
+    fn refuse(
+        &self,
+        quantity: &str,
+        value: impl std::fmt::Display,
+        bound: &'static str,
+    ) -> MachineError {
+        MachineError::field(format!("axis {}: {quantity}", self.name), value, bound)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_that_are_not_positive_and_finite_are_named() {
+        for value in [0.0, -3.0, f64::NAN, f64::INFINITY] {
+            let axis = AxisConfig::new('Y', 100.0, value, 1e5);
+            assert_eq!(
+                axis.linear().unwrap_err().to_string(),
+                format!("axis Y: acceleration is {value}, but must be positive and finite")
+            );
+        }
+    }
+
+    #[test]
+    fn travel_that_is_no_interval_is_refused() {
+        for travel in [
+            [1.0, 1.0],
+            [2.0, 1.0],
+            [f64::NAN, 1.0],
+            [0.0, f64::INFINITY],
+        ] {
+            let mut axis = AxisConfig::new('X', 100.0, 1000.0, 1e5);
+            axis.travel = Some(travel);
+            assert!(
+                matches!(axis.linear(), Err(MachineError::Field { .. })),
+                "{travel:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_rotary_axis_is_given_in_degrees() {
+        let mut axis = AxisConfig::new('C', 180.0, 360.0, 3600.0);
+        axis.travel = Some([-90.0, 90.0]);
+        let axis = axis.rotary().unwrap();
+        assert!(
+            (axis.limits.velocity() - std::f64::consts::PI).abs() < 1e-12,
+            "{axis:?}"
+        );
+        assert_eq!(axis.kind, AxisKind::Rotary, "kind");
+        let (low, high) = axis.travel.unwrap();
+        assert!(
+            (high - low - std::f64::consts::PI).abs() < 1e-12,
+            "{axis:?}"
+        );
+    }
+}

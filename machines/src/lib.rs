@@ -1,0 +1,18 @@
+//! Machines as plugins: what a machine file may say, and which machines can be built from it.
+//!
+//! A machine is one file that ends with its registration; nothing else in the workspace names it.
+//! Programs list the machines with [`models`] and build them by name with [`find`]; a controller
+//! that is linked where [`inventory`] cannot work lists its models itself in a [`Registry`].
+
+mod config;
+mod error;
+mod file;
+mod gantry;
+mod registry;
+
+pub use config::{AxisConfig, MachineConfig};
+pub use error::MachineError;
+pub use file::{from_toml, load, schema};
+pub use gantry::GANTRY;
+pub use inventory;
+pub use registry::{MachineModel, Registry, find, models};
