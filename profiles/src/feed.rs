@@ -1,0 +1,456 @@
+//! Seven-phase motion over a distance between two corners.
+//!
+//! Source: section 3.3.1, equations 3.11 to 3.25; the peak speed is searched on the distance that it
+//! needs, which is exact in every degenerate case, instead of by the printed quadratic and quartic.
+//! Not here: ends that decelerate at the start or accelerate at the end, which no corner has.
+
+use crate::error::ProfileError;
+use crate::phase::{Phase, integrate, knots, state_at};
+use crate::profile::{Profile, State};
+use crate::rise::Rise;
+use toolglide_kinematics::Tangential;
+use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK};
+
+/// Newton steps allowed to the search for the peak speed; bisection alone would need sixty, and
+/// three to five are usual.
+const MOST_STEPS: usize = 80;
+
+/// Share of the distance that the search for the peak speed may leave over; it is cruised, so that
+/// the distance is kept exactly and the loss of time is of second order.
+const PEAK_PRECISION: f64 = 1e-12;
+
+/// The two ends of a straight stretch and the limits along it; the distance is asked for later.
+///
+/// An end has a speed and an acceleration, both not negative: at the start the motion is gaining
+/// speed, at the end it is losing speed at that rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Connection {
+    /// Speed and acceleration at the start.
+    pub from: [f64; 2],
+    /// Speed and deceleration at the end.
+    pub to: [f64; 2],
+    /// Limits along the stretch; the velocity is the feedrate where that is lower.
+    pub limits: Tangential,
+}
+
+impl Connection {
+    /// Distance used when the motion rises to `peak` and falls again at once.
+    #[must_use]
+    #[inline]
+    pub fn distance_at(&self, peak: f64) -> f64 {
+        self.rise(peak).distance + self.fall(peak).distance
+    }
+
+    /// The lowest peak speed: where the accelerations of both ends have run out.
+    #[must_use]
+    #[inline]
+    pub fn least_peak(&self) -> f64 {
+        let Tangential { jerk, .. } = self.limits;
+        Rise::least_peak(self.from[0], self.from[1], jerk)
+            .max(Rise::least_peak(self.to[0], self.to[1], jerk))
+    }
+
+    /// The least distance over which the two ends can be joined.
+    #[must_use]
+    #[inline]
+    pub fn least_distance(&self) -> f64 {
+        self.distance_at(self.least_peak())
+    }
+
+    /// Duration of the fastest motion over `distance`, to about a part in a million; `None` when it
+    /// is too short or an end too fast.
+    #[must_use]
+    #[inline]
+    pub fn duration_over(&self, distance: f64) -> Option<f64> {
+        let solution = self.solve(distance, toolglide_kinematics::numeric::SEARCH_PRECISION)?;
+        Some(solution.rise.duration() + solution.cruise + solution.fall.duration())
+    }
+
+    fn rise(&self, peak: f64) -> Rise {
+        let Tangential {
+            acceleration, jerk, ..
+        } = self.limits;
+        Rise::to_peak(self.from[0], self.from[1], peak, acceleration, jerk)
+    }
+
+    fn fall(&self, peak: f64) -> Rise {
+        let Tangential {
+            acceleration, jerk, ..
+        } = self.limits;
+        Rise::to_peak(self.to[0], self.to[1], peak, acceleration, jerk)
+    }
+
+    /// The highest peak whose distance fits, to a relative precision; what is left over is cruised.
+    #[inline]
+    fn solve(&self, distance: f64, precision: f64) -> Option<Solution> {
+        let least = self.least_peak();
+        let feedrate = self.limits.velocity;
+        if least > feedrate * (1.0 + LIMIT_SLACK) {
+            return None;
+        }
+        let feedrate = feedrate.max(least);
+        let slack = CLOSURE * distance;
+        if feedrate.is_finite() {
+            let at_feedrate = self.at_peak(feedrate, distance);
+            if at_feedrate.left >= 0.0 {
+                return Some(at_feedrate);
+            }
+        }
+        let mut low = self.at_peak(least, distance);
+        if low.left < -slack {
+            return None;
+        }
+        // The distance is convex in the peak, so that Newton's step from either side lands to the
+        // right of the root; a nudge to the left of the size of its error makes it fit.
+        let mut low_peak = least;
+        let mut high_peak = feedrate;
+        let mut guess = self.first_guess(distance, least, feedrate);
+        for _ in 0..MOST_STEPS {
+            if !(guess > low_peak && guess < high_peak) {
+                guess = if high_peak.is_finite() {
+                    0.5 * (low_peak + high_peak)
+                } else {
+                    2.0 * low_peak.max(f64::MIN_POSITIVE)
+                };
+                if guess <= low_peak || guess >= high_peak {
+                    break;
+                }
+            }
+            let trial = self.at_peak(guess, distance);
+            if trial.left >= 0.0 {
+                low = trial;
+                low_peak = guess;
+                if trial.left <= precision * distance {
+                    break;
+                }
+            } else {
+                high_peak = guess;
+            }
+            let step =
+                trial.left / (trial.rise.distance_per_peak() + trial.fall.distance_per_peak());
+            let nudge = (step * step / guess + f64::EPSILON * guess).min(0.25 * step.abs());
+            guess += step - nudge;
+        }
+        Some(low)
+    }
+
+    /// The peak of the motion that starts and ends at rest with the same middle, which is near.
+    #[inline]
+    fn first_guess(&self, distance: f64, least: f64, feedrate: f64) -> f64 {
+        let Tangential {
+            acceleration, jerk, ..
+        } = self.limits;
+        // Without an acceleration limit a symmetric motion from rest obeys
+        // peak^3 = jerk * distance^2 / 4; raise it by the end speeds in the cubic mean.
+        let ends = 0.5 * (self.from[0].powi(3) + self.to[0].powi(3));
+        let free = (0.25 * jerk * distance * distance + ends).cbrt();
+        let knee = acceleration * acceleration / jerk;
+        let guess = if free > knee {
+            // Saturated: peak^2 + peak * knee = acceleration * distance + mean square of the ends.
+            let mean = 0.5 * (self.from[0] * self.from[0] + self.to[0] * self.to[0]);
+            let constant = acceleration * distance + mean;
+            0.5 * (-knee + (knee * knee + 4.0 * constant).sqrt())
+        } else {
+            free
+        };
+        guess.clamp(least, feedrate)
+    }
+
+    #[inline]
+    fn at_peak(&self, peak: f64, distance: f64) -> Solution {
+        let rise = self.rise(peak);
+        let fall = self.fall(peak);
+        let left = distance - (rise.distance + fall.distance);
+        Solution {
+            rise,
+            fall,
+            left,
+            cruise: if left > 0.0 && peak > 0.0 {
+                left / peak
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Solution {
+    rise: Rise,
+    fall: Rise,
+    left: f64,
+    cruise: f64,
+}
+
+/// Seven-phase motion over a distance: rise, cruise, fall.
+///
+/// # Examples
+/// ```
+/// use toolglide_kinematics::Tangential;
+/// use toolglide_profiles::{Connection, Feed, Profile};
+/// let limits = Tangential { velocity: 100.0, acceleration: 2500.0, jerk: 2e5 };
+/// let from_rest_to_rest = Connection { from: [0.0, 0.0], to: [0.0, 0.0], limits };
+/// let feed = Feed::over(10.0, &from_rest_to_rest)?;
+/// assert!((feed.duration() - 0.1525).abs() < 1e-12);
+/// assert!((feed.end().position - 10.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Feed {
+    start: State,
+    phases: [Phase; 7],
+    knots: [f64; 8],
+}
+
+impl Feed {
+    /// The fastest motion that joins the ends of `connection` over exactly `distance`, never turning
+    /// back, with non-negative acceleration before the peak and non-positive after it.
+    ///
+    /// # Errors
+    /// [`ProfileError::OutOfRange`] for an end that is negative, beyond a limit or not finite,
+    /// [`ProfileError::TooFast`] when an end leads beyond the feedrate,
+    /// [`ProfileError::TooShort`] with the distance that would have sufficed, and
+    /// [`ProfileError::NotClosed`] should the motion, integrated forward, miss its end.
+    pub fn over(distance: f64, connection: &Connection) -> Result<Self, ProfileError> {
+        check(distance, connection)?;
+        Self::solve(distance, connection)
+    }
+
+    fn solve(distance: f64, connection: &Connection) -> Result<Self, ProfileError> {
+        let Tangential { velocity, jerk, .. } = connection.limits;
+        let peak = connection.least_peak();
+        if peak > velocity * (1.0 + LIMIT_SLACK) {
+            return Err(ProfileError::TooFast {
+                peak,
+                feedrate: velocity,
+            });
+        }
+        let Some(solution) = connection.solve(distance, PEAK_PRECISION) else {
+            return Err(ProfileError::TooShort {
+                distance,
+                needed: connection.least_distance(),
+            });
+        };
+        let [up, hold, down] = solution.rise.durations;
+        let [last_up, last_hold, last_down] = solution.fall.durations;
+        let phase = |duration, jerk| Phase { duration, jerk };
+        let phases = [
+            phase(up, jerk),
+            phase(hold, 0.0),
+            phase(down, -jerk),
+            phase(solution.cruise, 0.0),
+            phase(last_down, -jerk),
+            phase(last_hold, 0.0),
+            phase(last_up, jerk),
+        ];
+        let start = State::moving(connection.from[0], connection.from[1]);
+        let end = integrate(start, &phases);
+        let speed_scale = solution.rise.apex * solution.rise.durations[2]
+            + solution.fall.apex * solution.fall.durations[2]
+            + velocity.min(
+                connection.from[0]
+                    .max(connection.to[0])
+                    .max(distance / solution.duration()),
+            );
+        closed("position", end.position - distance, distance)?;
+        closed("velocity", end.velocity - connection.to[0], speed_scale)?;
+        closed(
+            "acceleration",
+            end.acceleration + connection.to[1],
+            solution.rise.apex.max(solution.fall.apex),
+        )?;
+        Ok(Self {
+            start,
+            phases,
+            knots: knots(&phases),
+        })
+    }
+
+    /// The seven phases; some may have no duration.
+    #[must_use]
+    pub fn phases(&self) -> &[Phase; 7] {
+        &self.phases
+    }
+}
+
+impl Solution {
+    fn duration(&self) -> f64 {
+        (self.rise.duration() + self.cruise + self.fall.duration()).max(f64::MIN_POSITIVE)
+    }
+}
+
+impl Profile for Feed {
+    fn duration(&self) -> f64 {
+        self.knots[7]
+    }
+
+    fn at(&self, time: f64) -> State {
+        state_at(self.start, &self.phases, time)
+    }
+
+    fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+}
+
+fn check(distance: f64, connection: &Connection) -> Result<(), ProfileError> {
+    let Tangential {
+        velocity,
+        acceleration,
+        jerk,
+    } = connection.limits;
+    for (quantity, value) in [
+        ("velocity limit", velocity),
+        ("acceleration limit", acceleration),
+        ("jerk limit", jerk),
+    ] {
+        if value.is_nan() || value <= 0.0 {
+            return Err(ProfileError::NotPositive { quantity, value });
+        }
+    }
+    let most_acceleration = acceleration * (1.0 + LIMIT_SLACK);
+    for (quantity, value, high) in [
+        ("distance", distance, f64::MAX),
+        ("start speed", connection.from[0], f64::MAX),
+        ("end speed", connection.to[0], f64::MAX),
+        ("start acceleration", connection.from[1], most_acceleration),
+        ("end deceleration", connection.to[1], most_acceleration),
+    ] {
+        if !(0.0..=high).contains(&value) {
+            return Err(ProfileError::OutOfRange {
+                quantity,
+                value,
+                low: 0.0,
+                high,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn closed(quantity: &'static str, miss: f64, scale: f64) -> Result<(), ProfileError> {
+    if miss.abs() <= CLOSURE * scale {
+        Ok(())
+    } else {
+        Err(ProfileError::NotClosed { quantity, miss })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const LIMITS: Tangential = Tangential {
+        velocity: 100.0,
+        acceleration: 2500.0,
+        jerk: 2e5,
+    };
+
+    fn rest_to_rest(limits: Tangential) -> Connection {
+        Connection {
+            from: [0.0, 0.0],
+            to: [0.0, 0.0],
+            limits,
+        }
+    }
+
+    #[test]
+    fn a_short_move_from_rest_to_rest_is_four_jerk_phases() {
+        let limits = Tangential {
+            velocity: 1e3,
+            acceleration: 1e9,
+            jerk: 5e4,
+        };
+        let feed = Feed::over(4.0, &rest_to_rest(limits)).unwrap();
+        let closed_form = 4.0 * (4.0_f64 / (2.0 * 5e4)).cbrt();
+        assert!(
+            (feed.duration() / closed_form - 1.0).abs() < 1e-9,
+            "{}",
+            feed.duration()
+        );
+    }
+
+    #[test]
+    fn no_distance_between_rests_is_no_motion() {
+        let feed = Feed::over(0.0, &rest_to_rest(LIMITS)).unwrap();
+        assert!(feed.duration().abs() < 1e-15, "{feed:?}");
+    }
+
+    #[test]
+    fn the_distance_that_just_suffices_is_accepted() {
+        let connection = Connection {
+            from: [60.0, 1500.0],
+            to: [20.0, 800.0],
+            limits: LIMITS,
+        };
+        let least = connection.least_distance();
+        assert!(Feed::over(least, &connection).is_ok(), "{least}");
+        let refused = Feed::over(0.999 * least, &connection);
+        assert!(
+            matches!(refused, Err(ProfileError::TooShort { .. })),
+            "{refused:?}"
+        );
+    }
+
+    #[test]
+    fn an_acceleration_that_cannot_run_out_below_the_feedrate_is_refused() {
+        let connection = Connection {
+            from: [99.0, 2000.0],
+            to: [0.0, 0.0],
+            limits: LIMITS,
+        };
+        let refused = Feed::over(100.0, &connection);
+        assert!(
+            matches!(refused, Err(ProfileError::TooFast { .. })),
+            "{refused:?}"
+        );
+    }
+
+    #[test]
+    fn ends_that_are_not_numbers_are_refused() {
+        for bad in [f64::NAN, f64::INFINITY, -1.0] {
+            assert!(
+                Feed::over(bad, &rest_to_rest(LIMITS)).is_err(),
+                "distance {bad}"
+            );
+            let mut connection = rest_to_rest(LIMITS);
+            connection.from[0] = bad;
+            assert!(Feed::over(1.0, &connection).is_err(), "start speed {bad}");
+            let mut connection = rest_to_rest(LIMITS);
+            connection.to[1] = bad;
+            assert!(
+                Feed::over(1.0, &connection).is_err(),
+                "end deceleration {bad}"
+            );
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #[test]
+        fn a_feed_keeps_its_limits_and_meets_its_end(
+            v in prop::array::uniform2(0.0..1.0_f64), a in prop::array::uniform2(0.0..1.0_f64),
+            feedrate in 1.0..1000.0_f64, most in 100.0..30_000.0_f64, ratio in 3.0..1000.0_f64,
+            extra in prop_oneof![Just(0.0), 1e-9..1.0_f64, 1.0..1e4_f64],
+        ) {
+            let limits = Tangential { velocity: feedrate, acceleration: most, jerk: most * ratio };
+            let end = |v: f64, a: f64| {
+                let room = feedrate * v;
+                let a = (a * most).min((2.0 * limits.jerk * room).sqrt());
+                [(room - 0.5 * a * a / limits.jerk).max(0.0), a]
+            };
+            let connection = Connection { from: end(v[0], a[0]), to: end(v[1], a[1]), limits };
+            let distance = connection.least_distance() * (1.0 + extra) + extra * 1e-3;
+            let feed = Feed::over(distance, &connection).unwrap();
+            for knot in feed.knots() {
+                let state = feed.at(*knot);
+                prop_assert!(state.velocity <= feedrate * (1.0 + 1e-9), "{state:?}");
+                prop_assert!(state.velocity >= -1e-9 * feedrate, "{state:?}");
+                prop_assert!(state.acceleration.abs() <= most * (1.0 + 1e-9), "{state:?}");
+            }
+            let quick = connection.duration_over(distance).unwrap();
+            prop_assert!((quick - feed.duration()).abs() <= 1e-6 * quick, "{quick} {}", feed.duration());
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Jerk-limited laws of motion along one coordinate, and the seam that every corner motion
+//! implements.
+//!
+//! A law of motion is solved by its constructor and evaluated through [`Profile`]; every closed form
+//! is accepted only after it has been integrated forward and found to meet its request. This crate
+//! knows no axes and no path: it works along one coordinate, in mm, s and rad.
+
+mod blend;
+mod error;
+mod feed;
+mod jlap;
+mod phase;
+mod piecewise;
+mod profile;
+mod rise;
+
+pub use blend::{BlendError, Blender, Boundary, CornerMotion};
+pub use error::ProfileError;
+pub use feed::{Connection, Feed};
+pub use jlap::Jlap;
+pub use phase::Phase;
+pub use piecewise::{Piecewise, Polynomial};
+pub use profile::{Profile, State};
+pub use rise::Rise;
