@@ -1,0 +1,201 @@
+//! Arcs as they are written: by centre or by radius, in one of three planes.
+//!
+//! Source: `G2` and `G3` of RS274/NGC. Not here: the geometry of the arc itself.
+
+use crate::block::{AXES, Block, OFFSETS};
+use crate::codes::{Distance, Motion, Plane};
+use crate::error::Fault;
+use crate::modal::{Modal, whole};
+use crate::place::Span;
+use crate::reason::Reason;
+use crate::settings::Settings;
+use crate::units::within_reach;
+use crate::uses::motion_span;
+use toolglide_kinematics::numeric::SHORTEST_LENGTH;
+use toolglide_kinematics::{Arc, Vector};
+
+/// A radius may be too short by this to reach from start to end, mm; the arc is then half a
+/// circle. Programs round their coordinates and radii to three decimals.
+const RADIUS_SHORTFALL: f64 = 0.005;
+
+/// Most turns of one arc: more than a day of turns a machine could make.
+const MOST_TURNS: u32 = 1_000_000;
+
+impl Plane {
+    /// Its axes; a positive turn goes from the first to the second.
+    fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Xy => [0, 1],
+            Self::Zx => [2, 0],
+            Self::Yz => [1, 2],
+        }
+    }
+
+    /// The axis outside it.
+    fn normal(self) -> usize {
+        match self {
+            Self::Xy => 2,
+            Self::Zx => 1,
+            Self::Yz => 0,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Xy => "XY (G17)",
+            Self::Zx => "ZX (G18)",
+            Self::Yz => "YZ (G19)",
+        }
+    }
+
+    fn one_offset(self) -> &'static str {
+        match self {
+            Self::Xy => "I or J",
+            Self::Zx => "I or K",
+            Self::Yz => "J or K",
+        }
+    }
+
+    fn both_offsets(self) -> &'static str {
+        match self {
+            Self::Xy => "I and J",
+            Self::Zx => "I and K",
+            Self::Yz => "J and K",
+        }
+    }
+}
+
+/// The arc of a block, and the word to blame for its shape.
+pub(crate) fn arc(
+    block: &Block,
+    modal: &Modal,
+    settings: &Settings,
+    motion: Motion,
+    start: Vector<3>,
+    end: Vector<3>,
+) -> Result<Arc<3>, Fault> {
+    let plane = modal.plane;
+    let axes = plane.axes();
+    for axis in axes {
+        if !settings.axes[axis] {
+            let letter = char::from(AXES[axis]);
+            return Err(Fault::new(
+                motion_span(block),
+                Reason::NoSuchAxis { letter },
+            ));
+        }
+    }
+    let counter_clockwise = motion == Motion::CounterClockwise;
+    let (center, blamed) = center(block, modal, counter_clockwise, start, end)?;
+    let turns = whole(block, b'P', "number of turns", 1, MOST_TURNS)?.unwrap_or(1);
+    Arc::about(start, end, center, axes, counter_clockwise, turns - 1)
+        .map_err(|error| Fault::new(blamed, Reason::Path(error)))
+}
+
+fn center(
+    block: &Block,
+    modal: &Modal,
+    counter_clockwise: bool,
+    start: Vector<3>,
+    end: Vector<3>,
+) -> Result<(Vector<3>, Span), Fault> {
+    let plane = modal.plane;
+    let outside = OFFSETS[plane.normal()];
+    if block.has(outside) {
+        let reason = Reason::OffsetOutsidePlane {
+            letter: char::from(outside),
+            plane: plane.name(),
+        };
+        return Err(Fault::new(block.span(outside), reason));
+    }
+    let inside = plane.axes().map(|axis| OFFSETS[axis]);
+    match (block.get(b'R'), block.first_of(&inside)) {
+        (Some(_), Some(offset)) => {
+            let letter = char::from(offset);
+            let reason = Reason::ArcCenterAndRadius { letter };
+            Err(Fault::new(block.span(offset), reason))
+        }
+        (None, None) => {
+            let offsets = plane.one_offset();
+            let reason = Reason::ArcCenterMissing { offsets };
+            Err(Fault::new(motion_span(block), reason))
+        }
+        (Some(written), None) => {
+            let span = block.span(b'R');
+            modal
+                .units
+                .bounded_length('R', written)
+                .and_then(|radius| center_by_radius(plane, radius, counter_clockwise, start, end))
+                .map(|center| (center, span))
+                .map_err(|reason| Fault::new(span, reason))
+        }
+        (None, Some(offset)) => {
+            let span = block.span(offset);
+            center_by_offsets(block, modal, span, start).map(|center| (center, span))
+        }
+    }
+}
+
+fn center_by_offsets(
+    block: &Block,
+    modal: &Modal,
+    blamed: Span,
+    start: Vector<3>,
+) -> Result<Vector<3>, Fault> {
+    let mut center = start;
+    for axis in modal.plane.axes() {
+        let letter = OFFSETS[axis];
+        let name = char::from(letter);
+        let at = |reason| Fault::new(block.span(letter), reason);
+        match (block.get(letter), modal.arc_distance) {
+            (Some(value), Distance::Absolute) => {
+                center[axis] = modal.units.bounded_length(name, value).map_err(at)?;
+            }
+            (Some(value), Distance::Incremental) => {
+                let offset = modal.units.length(value);
+                center[axis] = within_reach(name, start[axis] + offset).map_err(at)?;
+            }
+            (None, Distance::Absolute) => {
+                let offsets = modal.plane.both_offsets();
+                return Err(Fault::new(blamed, Reason::ArcCenterIncomplete { offsets }));
+            }
+            (None, Distance::Incremental) => {}
+        }
+    }
+    Ok(center)
+}
+
+/// The centre from a radius: of the two circles through both ends, the one that gives the shorter
+/// arc, or the longer arc when the radius is negative.
+fn center_by_radius(
+    plane: Plane,
+    radius: f64,
+    counter_clockwise: bool,
+    start: Vector<3>,
+    end: Vector<3>,
+) -> Result<Vector<3>, Reason> {
+    let [first, second] = plane.axes();
+    let chord = [end[first] - start[first], end[second] - start[second]];
+    let length = chord[0].hypot(chord[1]);
+    if length <= SHORTEST_LENGTH {
+        let offsets = plane.one_offset();
+        return Err(Reason::ArcRadiusClosed { radius, offsets });
+    }
+    let half_chord = 0.5 * length;
+    if radius.abs() < half_chord - RADIUS_SHORTFALL || radius.abs() <= SHORTEST_LENGTH {
+        return Err(Reason::ArcRadiusTooShort {
+            radius,
+            half_chord,
+            allowed: RADIUS_SHORTFALL,
+        });
+    }
+    let square = (radius.abs() - half_chord) * (radius.abs() + half_chord);
+    let height = square.max(0.0).sqrt();
+    // The shorter arc turns about a centre on the side to which it bends.
+    let left = counter_clockwise == (radius > 0.0);
+    let side = if left { height } else { -height };
+    let mut center = start;
+    center[first] += 0.5 * chord[0] - side * chord[1] / length;
+    center[second] += 0.5 * chord[1] + side * chord[0] / length;
+    Ok(center)
+}

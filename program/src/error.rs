@@ -1,0 +1,122 @@
+//! A refusal or a warning with its place.
+//!
+//! Not here: what can be wrong, see [`Reason`].
+
+use crate::place::{Place, Span};
+use crate::reason::Reason;
+use thiserror::Error;
+
+/// Why a program is refused, and where.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{place}: {reason}")]
+pub struct ProgramError {
+    place: Place,
+    reason: Reason,
+}
+
+impl ProgramError {
+    pub(crate) fn new(place: Place, reason: Reason) -> Self {
+        Self { place, reason }
+    }
+
+    /// Where it stands, with file, line, column and word.
+    #[must_use]
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// What is wrong.
+    #[must_use]
+    pub fn reason(&self) -> &Reason {
+        &self.reason
+    }
+
+    /// Name of the file, as it was given.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        self.place.file()
+    }
+
+    /// Line, counted from 1.
+    #[must_use]
+    pub fn line(&self) -> u64 {
+        self.place.line()
+    }
+
+    /// Column, counted in characters from 1.
+    #[must_use]
+    pub fn column(&self) -> u32 {
+        self.place.column()
+    }
+
+    /// How many characters a caret should underline, at least one.
+    #[must_use]
+    pub fn length(&self) -> u32 {
+        self.place.length()
+    }
+
+    /// The offending word as it was written; empty where a whole line or file is at fault.
+    #[must_use]
+    pub fn word(&self) -> &str {
+        self.place.word()
+    }
+}
+
+/// What a warning says.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Notice {
+    /// A word was skipped that would have been refused by strict reading; no axis depends on it.
+    #[error("skipped: {0}")]
+    Skipped(Reason),
+    /// `F` stands in the block that changes the units, and is read in those before it.
+    #[error(
+        "F is read in {former} a minute, because it takes effect before the units of its block"
+    )]
+    FeedBeforeUnits {
+        /// Name of the units until this block.
+        former: &'static str,
+    },
+}
+
+/// Something that a reader of the result should know, and where it stands.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{place}: {notice}")]
+pub struct Warning {
+    place: Place,
+    notice: Notice,
+}
+
+impl Warning {
+    pub(crate) fn new(place: Place, notice: Notice) -> Self {
+        Self { place, notice }
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// What it says.
+    #[must_use]
+    pub fn notice(&self) -> &Notice {
+        &self.notice
+    }
+}
+
+/// A refusal inside a line, before file and line are known.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fault {
+    pub(crate) span: Span,
+    pub(crate) reason: Reason,
+}
+
+impl Fault {
+    pub(crate) fn new(span: Span, reason: Reason) -> Self {
+        Self { span, reason }
+    }
+}
+
+/// A warning inside a line, before file and line are known.
+pub(crate) type Remark = (Span, Notice);

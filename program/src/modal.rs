@@ -1,0 +1,162 @@
+//! What a program has said that stays in force.
+//!
+//! Source: the order of execution of RS274/NGC. Not here: motion.
+
+use crate::block::Block;
+use crate::codes::{Distance, FeedMode, Motion, PathControl, Plane};
+use crate::error::{Fault, Notice, Remark};
+use crate::reason::Reason;
+use crate::settings::Settings;
+use crate::units::Units;
+use toolglide_kinematics::Tolerance;
+
+/// Largest number of a tool.
+const LARGEST_TOOL: u32 = 999_999;
+
+/// The modal state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Modal {
+    pub(crate) motion: Motion,
+    pub(crate) plane: Plane,
+    pub(crate) units: Units,
+    pub(crate) distance: Distance,
+    pub(crate) arc_distance: Distance,
+    pub(crate) feed_mode: FeedMode,
+    /// Feedrate of the mode per minute, mm/s; none before the first.
+    pub(crate) feedrate: Option<f64>,
+    pub(crate) path_control: PathControl,
+    pub(crate) tolerance: Tolerance,
+    pub(crate) spindle_speed: f64,
+    pub(crate) tool: u32,
+}
+
+impl Modal {
+    pub(crate) fn new(settings: &Settings) -> Self {
+        Self {
+            motion: Motion::Off,
+            plane: Plane::Xy,
+            units: Units::Millimeter,
+            distance: Distance::Absolute,
+            arc_distance: Distance::Incremental,
+            feed_mode: FeedMode::PerMinute,
+            feedrate: None,
+            path_control: PathControl::Blend,
+            tolerance: settings.tolerance,
+            spindle_speed: 0.0,
+            tool: 0,
+        }
+    }
+
+    /// Takes what a block changes, in the order of execution.
+    pub(crate) fn take(
+        &mut self,
+        block: &Block,
+        settings: &Settings,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
+        if let Some(mode) = block.feed_mode
+            && mode != self.feed_mode
+        {
+            // The number means something else from here, so it must be written again.
+            self.feed_mode = mode;
+            self.feedrate = None;
+        }
+        self.take_feedrate(block, remarks)?;
+        self.take_speed_and_tool(block)?;
+        self.plane = block.plane.unwrap_or(self.plane);
+        self.units = block.units.unwrap_or(self.units);
+        self.take_path_control(block, settings)?;
+        self.distance = block.distance.unwrap_or(self.distance);
+        self.arc_distance = block.arc_distance.unwrap_or(self.arc_distance);
+        self.motion = block.motion.unwrap_or(self.motion);
+        Ok(())
+    }
+
+    fn take_feedrate(&mut self, block: &Block, remarks: &mut Vec<Remark>) -> Result<(), Fault> {
+        let Some(value) = not_negative(block, b'F', "feedrate")? else {
+            return Ok(());
+        };
+        if self.feed_mode == FeedMode::PerMinute {
+            self.feedrate = Some(self.units.feedrate(value));
+            if block.units.is_some_and(|units| units != self.units) {
+                let former = self.units.name();
+                remarks.push((block.span(b'F'), Notice::FeedBeforeUnits { former }));
+            }
+        }
+        Ok(())
+    }
+
+    fn take_speed_and_tool(&mut self, block: &Block) -> Result<(), Fault> {
+        if let Some(speed) = not_negative(block, b'S', "spindle speed")? {
+            self.spindle_speed = speed;
+        }
+        if let Some(tool) = whole(block, b'T', "tool number", 0, LARGEST_TOOL)? {
+            self.tool = tool;
+        }
+        Ok(())
+    }
+
+    fn take_path_control(&mut self, block: &Block, settings: &Settings) -> Result<(), Fault> {
+        let Some(control) = block.path_control else {
+            return Ok(());
+        };
+        self.path_control = control;
+        if control == PathControl::ExactStop {
+            return Ok(());
+        }
+        not_negative(block, b'Q', "tolerance of merging")?;
+        self.tolerance = settings.tolerance;
+        if let Some(value) = not_negative(block, b'P', "tolerance")?
+            && !settings.override_tolerance
+        {
+            self.tolerance = Tolerance::new(self.units.length(value)).map_err(|_| {
+                let quantity = "tolerance";
+                Fault::new(block.span(b'P'), Reason::NotPositive { quantity, value })
+            })?;
+        }
+        Ok(())
+    }
+}
+
+/// The number after a letter, if it stands in the block.
+pub(crate) fn not_negative(
+    block: &Block,
+    letter: u8,
+    quantity: &'static str,
+) -> Result<Option<f64>, Fault> {
+    match block.get(letter) {
+        Some(value) if value < 0.0 => Err(Fault::new(
+            block.span(letter),
+            Reason::Negative { quantity, value },
+        )),
+        value => Ok(value),
+    }
+}
+
+/// The whole number after a letter, if it stands in the block.
+pub(crate) fn whole(
+    block: &Block,
+    letter: u8,
+    quantity: &'static str,
+    least: u32,
+    most: u32,
+) -> Result<Option<u32>, Fault> {
+    let Some(value) = block.get(letter) else {
+        return Ok(None);
+    };
+    if !(f64::from(least)..=f64::from(most)).contains(&value) || value.fract() != 0.0 {
+        let reason = Reason::NotWhole {
+            quantity,
+            value,
+            least,
+            most,
+        };
+        return Err(Fault::new(block.span(letter), reason));
+    }
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole and between two numbers of the type"
+    )]
+    Ok(Some(value as u32))
+}

@@ -1,0 +1,35 @@
+//! What a reader of programs must know beside the program.
+//!
+//! Not here: what the program itself says.
+
+use toolglide_kinematics::{Tolerance, Vector};
+
+/// How a program is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Tolerance until the program says `G64 P`, and again after a `G64` without `P`.
+    pub tolerance: Tolerance,
+    /// Whether every `P` of a `G64` is ignored in favour of `tolerance`.
+    pub override_tolerance: bool,
+    /// Where the motion begins.
+    pub start: Vector<3>,
+    /// Which of X, Y and Z the machine has; a word for another one is refused.
+    pub axes: [bool; 3],
+    /// Whether words that certainly do not move an axis become warnings where they would be
+    /// refused.
+    pub lenient: bool,
+}
+
+impl Settings {
+    /// Strict reading for a machine of three axes that starts at the origin.
+    #[must_use]
+    pub fn new(tolerance: Tolerance) -> Self {
+        Self {
+            tolerance,
+            override_tolerance: false,
+            start: Vector::zeros(),
+            axes: [true; 3],
+            lenient: false,
+        }
+    }
+}

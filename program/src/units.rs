@@ -1,0 +1,72 @@
+//! Units of a program, and the one place where they become mm and s.
+//!
+//! Source: `G20`, `G21`, `G93` and `G94` of RS274/NGC.
+
+use crate::reason::Reason;
+
+/// One inch, mm.
+const INCH: f64 = 25.4;
+
+/// One minute, s.
+const MINUTE: f64 = 60.0;
+
+/// Coordinates, radii and offsets farther than this are refused, mm: a thousand kilometres, beyond
+/// which a float of 64 bits no longer resolves a tenth of a micrometre.
+pub const FARTHEST: f64 = 1e9;
+
+/// Units of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Units {
+    Inch,
+    Millimeter,
+}
+
+impl Units {
+    /// Millimetres in one unit.
+    fn scale(self) -> f64 {
+        match self {
+            Self::Inch => INCH,
+            Self::Millimeter => 1.0,
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Inch => "inch",
+            Self::Millimeter => "mm",
+        }
+    }
+
+    /// A length in mm, not checked for size.
+    pub(crate) fn length(self, value: f64) -> f64 {
+        value * self.scale()
+    }
+
+    /// A length in mm that may not exceed [`FARTHEST`].
+    pub(crate) fn bounded_length(self, letter: char, value: f64) -> Result<f64, Reason> {
+        within_reach(letter, self.length(value))
+    }
+
+    /// A feedrate in mm/s from units a minute.
+    pub(crate) fn feedrate(self, value: f64) -> f64 {
+        self.length(value) / MINUTE
+    }
+}
+
+/// Refuses a length beyond [`FARTHEST`].
+pub(crate) fn within_reach(letter: char, length: f64) -> Result<f64, Reason> {
+    if length.abs() <= FARTHEST {
+        Ok(length)
+    } else {
+        Err(Reason::TooFar {
+            letter,
+            value: length,
+            bound: FARTHEST,
+        })
+    }
+}
+
+/// Speed of a move of `length` that lasts one over `rate` minutes.
+pub(crate) fn inverse_time(length: f64, rate: f64) -> f64 {
+    length * rate / MINUTE
+}
