@@ -2,9 +2,9 @@
 //!
 //! What a user may want different is an argument; what only float arithmetic needs stands here.
 
-/// Points nearer than this coincide, mm: a picometre, far below any encoder and far above the
+/// Points nearer than this coincide, mm: a tenth of a picometre, far below any encoder and above the
 /// rounding of coordinates of some metres.
-pub const SHORTEST_LENGTH: f64 = 1e-9;
+pub const SHORTEST_LENGTH: f64 = 1e-10;
 
 /// Relative room granted to a limit before it counts as broken: the rounding of a few hundred
 /// operations on a bound that the planner uses up entirely.
@@ -35,3 +35,6 @@ pub const ARC_RADIUS_MISMATCH_MOST: f64 = 0.5;
 /// A tool orientation may miss unit length by this before it is refused instead of normalised:
 /// programs write four decimals and more.
 pub const UNIT_LENGTH_ERROR: f64 = 1e-3;
+
+/// Share of a tolerance that remains however much of it was used, so that a tolerance stays positive.
+pub const LEAST_SHARE: f64 = 1e-3;

@@ -3,6 +3,7 @@
 //! Source: the corner error of sections 2.3 and 3.2. Not here: tolerances of the orientation.
 
 use crate::error::ToolpathError;
+use crate::numeric::LEAST_SHARE;
 
 /// Corner tolerance: every point of the motion lies within it of the path, and the motion passes
 /// within it of every corner. Positive and finite, mm.
@@ -29,6 +30,12 @@ impl Tolerance {
     #[must_use]
     pub fn length(self) -> f64 {
         self.0
+    }
+
+    /// What is left of the tolerance after `used` mm of it; at least a thousandth.
+    #[must_use]
+    pub fn less(self, used: f64) -> Self {
+        Self((self.0 - used.max(0.0)).max(self.0 * LEAST_SHARE))
     }
 
     /// The smaller of two tolerances.

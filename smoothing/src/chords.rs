@@ -1,0 +1,54 @@
+//! Arcs as chords, one at a time.
+//!
+//! Source: ours; chapter 3 plans over straight moves. Between two points of the arc the chord lies
+//! off by at most an eighth of the square of the angle times the radius, which bounds a helix and
+//! slightly unequal radii alike. Not here: arcs that stay arcs, which chapter 4 filters.
+
+use crate::merge::MERGE_SHARE;
+use std::f64::consts::FRAC_PI_2;
+use toolglide_kinematics::{Arc, Vector};
+
+/// The ends of the chords of an arc, in order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Chords<const N: usize> {
+    arc: Arc<N>,
+    count: f64,
+    next: f64,
+    bulge: f64,
+}
+
+impl<const N: usize> Chords<N> {
+    /// Chords that leave the corners their share of `tolerance`.
+    pub(crate) fn new(arc: Arc<N>, tolerance: f64) -> Self {
+        let (start_radius, end_radius) = arc.radii();
+        let sweep = arc.sweep().abs();
+        let growth = (end_radius - start_radius).abs() / sweep;
+        let curvature = start_radius.max(end_radius) + 2.0 * growth;
+        let angle = (8.0 * MERGE_SHARE * tolerance / curvature)
+            .sqrt()
+            .min(FRAC_PI_2);
+        let count = (sweep / angle).ceil().max(1.0);
+        let angle = sweep / count;
+        Self {
+            arc,
+            count,
+            next: 1.0,
+            bulge: 0.125 * angle * angle * curvature,
+        }
+    }
+
+    /// How far the arc lies from its chords at the most.
+    pub(crate) fn bulge(&self) -> f64 {
+        self.bulge
+    }
+
+    /// The end of the next chord.
+    pub(crate) fn next(&mut self) -> Option<Vector<N>> {
+        if self.next > self.count {
+            return None;
+        }
+        let point = self.arc.point(self.next / self.count);
+        self.next += 1.0;
+        Some(point)
+    }
+}

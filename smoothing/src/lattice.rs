@@ -1,0 +1,237 @@
+//! Which motion each corner gets: the cheapest way through the candidates of all corners.
+//!
+//! Source: ours; section 8 of our derivation shows that no single kind is always the fastest. Each
+//! corner offers a full stop and the motions that the windows have scaled; every motion of a window
+//! is followed by one of the same window that fits, and a stop is followed by a stop, so no choice
+//! leads into a dead end. The plan that stops at every corner is one of the ways, so the cheapest is
+//! never slower. Not here: where the candidates come from.
+
+use crate::turn::TurnShape;
+use crate::window::Link;
+use std::collections::VecDeque;
+use toolglide_profiles::Connection;
+
+/// Most candidates of one corner.
+pub(crate) const MOST_CANDIDATES: usize = 4;
+
+/// Corners between two attempts to commit.
+const PATIENCE: usize = 16;
+
+/// A corner, its candidates, and the cheapest way to each.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    shapes: [TurnShape; MOST_CANDIDATES],
+    costs: [f64; MOST_CANDIDATES],
+    origins: [u8; MOST_CANDIDATES],
+    count: usize,
+}
+
+/// The cheapest way through a stream of corners, committed as soon as all ways agree.
+#[derive(Clone, Debug)]
+pub(crate) struct Lattice {
+    columns: VecDeque<Column>,
+    chosen: VecDeque<TurnShape>,
+    way: Vec<u8>,
+    size: usize,
+    wait: usize,
+    finished: bool,
+}
+
+impl Lattice {
+    /// A lattice that holds `size` corners at the most and begins at rest.
+    pub(crate) fn new(size: usize) -> Self {
+        let size = size.max(1);
+        let mut columns = VecDeque::with_capacity(size + 2);
+        let mut first = Column::empty();
+        first.offer(TurnShape::STOP);
+        first.costs[0] = 0.0;
+        columns.push_back(first);
+        Self {
+            columns,
+            chosen: VecDeque::with_capacity(size + 2),
+            way: Vec::with_capacity(size + 2),
+            size,
+            wait: PATIENCE.min(size),
+            finished: false,
+        }
+    }
+
+    /// Takes a move and the candidates of the corner at its end.
+    pub(crate) fn push(&mut self, link: &Link, candidates: &[TurnShape]) {
+        let mut column = Column::empty();
+        for candidate in candidates {
+            column.offer(*candidate);
+        }
+        if let Some(last) = self.columns.back() {
+            column.reach_from(last, link);
+        }
+        self.columns.push_back(column);
+        self.wait = self.wait.saturating_sub(1);
+        if self.wait == 0 || self.columns.len() > self.size {
+            self.commit();
+            self.wait = PATIENCE.min(self.size);
+        }
+    }
+
+    /// Says that the motion ends at the last corner pushed.
+    pub(crate) fn finish(&mut self) {
+        self.finished = true;
+        self.commit();
+    }
+
+    /// The motion chosen for the next corner.
+    pub(crate) fn pull(&mut self) -> Option<TurnShape> {
+        self.chosen.pop_front()
+    }
+
+    /// Commits the part of the way on which all survivors agree; when the lattice is full, half of
+    /// the way that could stop now.
+    fn commit(&mut self) {
+        let Some(last) = self.columns.back() else {
+            return;
+        };
+        let end = self.columns.len() - 1;
+        // Walk all survivors back at once until they meet.
+        let mut alive = [false; MOST_CANDIDATES];
+        for (candidate, cost) in last.costs.iter().enumerate().take(last.count) {
+            alive[candidate] = cost.is_finite();
+        }
+        if self.finished {
+            alive = [false; MOST_CANDIDATES];
+            alive[last.cheapest()] = true;
+        }
+        let mut index = end;
+        while index > 0 && alive.iter().filter(|alive| **alive).count() > 1 {
+            let mut before = [false; MOST_CANDIDATES];
+            for candidate in 0..self.columns[index].count {
+                if alive[candidate] {
+                    before[usize::from(self.columns[index].origins[candidate])] = true;
+                }
+            }
+            alive = before;
+            index -= 1;
+        }
+        let mut candidate = alive.iter().position(|alive| *alive).unwrap_or(0);
+        if index == 0 && end >= self.size {
+            (index, candidate) = self.force();
+        }
+        // Read the agreed way backwards, then commit it forwards.
+        self.way.clear();
+        for at in (1..=index).rev() {
+            self.way.push(u8::try_from(candidate).unwrap_or(0));
+            candidate = usize::from(self.columns[at].origins[candidate]);
+        }
+        for at in 1..=index {
+            let choice = usize::from(self.way[index - at]);
+            self.chosen.push_back(self.columns[at].shapes[choice]);
+        }
+        self.columns.drain(..index);
+        self.settle();
+    }
+
+    /// Half of the cheapest way to a stop at the last corner, which exists always; ways that left it
+    /// before are given up.
+    fn force(&mut self) -> (usize, usize) {
+        let end = self.columns.len() - 1;
+        let middle = (end / 2).max(1);
+        let last = self.columns[end];
+        let goal = last.stop();
+        let target = self.origin_at(end, goal, middle);
+        for candidate in 0..last.count {
+            if last.costs[candidate].is_finite() && self.origin_at(end, candidate, middle) != target
+            {
+                self.columns[end].costs[candidate] = f64::INFINITY;
+            }
+        }
+        (middle, target)
+    }
+
+    fn origin_at(&self, from: usize, candidate: usize, at: usize) -> usize {
+        let mut candidate = candidate;
+        for index in (at + 1..=from).rev() {
+            candidate = usize::from(self.columns[index].origins[candidate]);
+        }
+        candidate
+    }
+
+    /// Counts costs from the newest column, so that they do not grow with the program.
+    fn settle(&mut self) {
+        if let Some(last) = self.columns.back_mut() {
+            let base = last.costs[..last.count]
+                .iter()
+                .fold(f64::INFINITY, |least, cost| least.min(*cost));
+            if base.is_finite() {
+                for cost in &mut last.costs[..last.count] {
+                    *cost -= base;
+                }
+            }
+        }
+    }
+}
+
+impl Column {
+    fn empty() -> Self {
+        Self {
+            shapes: [TurnShape::STOP; MOST_CANDIDATES],
+            costs: [f64::INFINITY; MOST_CANDIDATES],
+            origins: [0; MOST_CANDIDATES],
+            count: 0,
+        }
+    }
+
+    /// Adds a candidate unless it is there already.
+    fn offer(&mut self, shape: TurnShape) {
+        let known = self.shapes[..self.count].contains(&shape);
+        if !known && self.count < MOST_CANDIDATES {
+            self.shapes[self.count] = shape;
+            self.count += 1;
+        }
+    }
+
+    fn stop(&self) -> usize {
+        self.shapes[..self.count]
+            .iter()
+            .position(TurnShape::is_stop)
+            .unwrap_or_else(|| self.cheapest())
+    }
+
+    fn cheapest(&self) -> usize {
+        let mut best = 0;
+        for candidate in 1..self.count {
+            if self.costs[candidate] < self.costs[best] {
+                best = candidate;
+            }
+        }
+        best
+    }
+
+    /// Finds the cheapest way to each candidate over `link`.
+    fn reach_from(&mut self, last: &Self, link: &Link) {
+        for candidate in 0..self.count {
+            let to = self.shapes[candidate];
+            let mut best = f64::INFINITY;
+            for origin in 0..last.count {
+                let from = &last.shapes[origin];
+                let length = link.length - from.reach - to.reach;
+                // No way is shorter than the whole length at the feedrate.
+                let least = last.costs[origin] + to.duration + length / link.limits.velocity;
+                if length < 0.0 || least >= best {
+                    continue;
+                }
+                let connection = Connection {
+                    from: [from.speed, from.acceleration],
+                    to: [to.speed, to.acceleration],
+                    limits: link.limits,
+                };
+                if let Some(duration) = connection.duration_over(length) {
+                    let cost = last.costs[origin] + to.duration + duration;
+                    if cost < best {
+                        best = cost;
+                        self.origins[candidate] = u8::try_from(origin).unwrap_or(0);
+                    }
+                }
+            }
+            self.costs[candidate] = best;
+        }
+    }
+}

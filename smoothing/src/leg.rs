@@ -1,0 +1,50 @@
+//! A straight stretch between two corners, after merging.
+//!
+//! Source: the straight moves of section 3.3. Not here: how it comes about, see the merger.
+
+use toolglide_kinematics::{Piece, Sample, Serves, Tangential, Tolerance, Vector};
+
+/// A straight stretch of path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leg<const N: usize> {
+    pub(crate) start: Vector<N>,
+    pub(crate) end: Vector<N>,
+    pub(crate) direction: Vector<N>,
+    pub(crate) length: f64,
+    /// Limits along the leg; the velocity is the feedrate where that is lower.
+    pub(crate) limits: Tangential,
+    /// What merging has left of the tolerance.
+    pub(crate) tolerance: Tolerance,
+    pub(crate) serves: Serves,
+    /// Whether the motion rests at its end.
+    pub(crate) stop: bool,
+    /// A pause at its end.
+    pub(crate) dwell: Option<Dwell<N>>,
+}
+
+/// A pause at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Dwell<const N: usize> {
+    pub(crate) duration: f64,
+    pub(crate) serves: Serves,
+    pub(crate) end: Vector<N>,
+}
+
+impl<const N: usize> Dwell<N> {
+    /// The pause as motion, which has come to rest at `at`.
+    pub(crate) fn piece(&self, at: Vector<N>) -> Piece<N> {
+        Piece::new(&Sample::at_rest(at), self.duration, self.end, self.serves)
+    }
+
+    /// Two pauses, one after the other.
+    pub(crate) fn then(self, next: Self) -> Self {
+        Self {
+            duration: self.duration + next.duration,
+            serves: Serves {
+                first: self.serves.first,
+                last: next.serves.last,
+            },
+            end: next.end,
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Kinematic corner smoothing: the axis velocities are blended around each corner inside the corner
+//! tolerance, without splines, and a look-ahead window shares short moves between the corners.
+//!
+//! [`KinematicSmoothing`] plans while a path streams in; [`plan`] does so for a whole toolpath. The
+//! corner motions [`Interrupted`] and [`Uninterrupted`] can be used by themselves. This crate does
+//! not know filters, machines or programs.
+
+mod chords;
+mod interrupted;
+mod lattice;
+mod leg;
+mod merge;
+mod method;
+mod pieces;
+mod planner;
+mod select;
+mod turn;
+mod uninterrupted;
+mod window;
+
+pub use interrupted::Interrupted;
+pub use method::{Method, Settings};
+pub use planner::{KinematicSmoothing, plan};
+pub use turn::{Turn, TurnShape};
+pub use uninterrupted::Uninterrupted;
+
+/// Turns of a unit direction smaller than this are taken for straight: the velocity then jumps by
+/// less than a billionth of the feedrate, which no drive resolves.
+pub(crate) const STRAIGHT: f64 = 1e-12;

@@ -1,0 +1,197 @@
+//! Short moves merged into longer straight ones inside the tolerance, as they stream in.
+//!
+//! Source: ours; section 3.3 of the dissertation takes short moves as they come. A straight line may
+//! replace a run of moves when every corner it leaves out lies within a share of the tolerance of it;
+//! by continuity the whole run then lies near the line and the line near the run. What a merged move
+//! uses of the tolerance is measured, and the corners at its ends get the rest. Not here: motion.
+
+use crate::leg::{Dwell, Leg};
+use toolglide_kinematics::numeric::SHORTEST_LENGTH;
+use toolglide_kinematics::{Limits, Serves, Tolerance, Vector};
+
+/// Share of the tolerance that merging and chords may use. On a curve of radius `R`, chords of length
+/// `c` lie `c^2 / 8R` off and corners that fill the chords cut `c^2 / 12R`: three parts to two.
+pub(crate) const MERGE_SHARE: f64 = 0.6;
+
+/// Most moves merged into one: bounds memory and the work a move.
+const MOST_MERGED: usize = 64;
+
+/// The end of a straight stretch of the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Vertex<const N: usize> {
+    pub(crate) point: Vector<N>,
+    /// How far the programmed path may lie from the straight stretch that ends here.
+    pub(crate) bulge: f64,
+    pub(crate) feedrate: f64,
+    pub(crate) tolerance: Tolerance,
+    pub(crate) serves: Serves,
+}
+
+/// Merges vertices into legs.
+#[derive(Clone, Debug)]
+pub(crate) struct Merger<const N: usize> {
+    limits: Limits<N>,
+    anchor: Vector<N>,
+    run: Vec<Vertex<N>>,
+    /// Largest distance of the run from its line.
+    deviation: f64,
+    carried: Option<Carried<N>>,
+}
+
+/// Moves that led nowhere and wait for a leg to serve them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Carried<const N: usize> {
+    serves: Serves,
+    /// How far they strayed.
+    deviation: f64,
+    /// Where they ended: the anchor, but for rounding.
+    end: Vector<N>,
+}
+
+impl<const N: usize> Merger<N> {
+    pub(crate) fn new(start: Vector<N>, limits: Limits<N>) -> Self {
+        Self {
+            limits,
+            anchor: start,
+            run: Vec::with_capacity(MOST_MERGED + 1),
+            deviation: 0.0,
+            carried: None,
+        }
+    }
+
+    /// Takes the next vertex; gives the leg that it completes.
+    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Leg<N>> {
+        if self.run.is_empty() && (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
+            self.carry(vertex.serves, vertex.bulge, vertex.point);
+            return None;
+        }
+        let mut leg = None;
+        match self.deviation_with(&vertex) {
+            Some(deviation) => self.deviation = deviation,
+            None => {
+                leg = self.flush();
+                if (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
+                    self.carry(vertex.serves, vertex.bulge, vertex.point);
+                    return leg;
+                }
+                self.deviation = vertex.bulge;
+            }
+        }
+        self.run.push(vertex);
+        leg
+    }
+
+    /// Completes the leg under way, if there is one.
+    pub(crate) fn flush(&mut self) -> Option<Leg<N>> {
+        let (first, last) = (*self.run.first()?, *self.run.last()?);
+        let span = last.point - self.anchor;
+        let length = span.norm();
+        let mut serves = Serves {
+            first: first.serves.first,
+            last: last.serves.last,
+        };
+        let mut deviation = self.deviation;
+        if let Some(carried) = self.carried.take() {
+            serves.first = carried.serves.first;
+            deviation = deviation.max(carried.deviation);
+        }
+        let (mut feedrate, mut tolerance) = (first.feedrate, first.tolerance);
+        for vertex in &self.run {
+            feedrate = feedrate.min(vertex.feedrate);
+            tolerance = tolerance.min(vertex.tolerance);
+        }
+        self.run.clear();
+        self.deviation = 0.0;
+        if length <= SHORTEST_LENGTH {
+            self.carry(serves, deviation, last.point);
+            return None;
+        }
+        let direction = span / length;
+        let mut limits = self.limits.along(&direction);
+        limits.velocity = limits.velocity.min(feedrate);
+        let leg = Leg {
+            start: self.anchor,
+            end: last.point,
+            direction,
+            length,
+            limits,
+            tolerance: tolerance.less(deviation),
+            serves,
+            stop: false,
+            dwell: None,
+        };
+        self.anchor = last.point;
+        Some(leg)
+    }
+
+    /// Moves that led nowhere and that no leg has served.
+    pub(crate) fn take_carried(&mut self) -> Option<Dwell<N>> {
+        let carried = self.carried.take()?;
+        Some(Dwell {
+            duration: 0.0,
+            serves: carried.serves,
+            end: carried.end,
+        })
+    }
+
+    /// Where the last leg ended.
+    pub(crate) fn anchor(&self) -> Vector<N> {
+        self.anchor
+    }
+
+    fn carry(&mut self, serves: Serves, deviation: f64, end: Vector<N>) {
+        let mut carried = Carried {
+            serves,
+            deviation,
+            end,
+        };
+        if let Some(before) = self.carried {
+            carried.serves.first = before.serves.first;
+            carried.deviation = deviation.max(before.deviation);
+        }
+        self.carried = Some(carried);
+    }
+
+    /// Largest distance of the run from a line to `vertex`, or `None` when it cannot be merged.
+    fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
+        let Some(before) = self.run.last() else {
+            return Some(vertex.bulge);
+        };
+        if self.run.len() >= MOST_MERGED {
+            return None;
+        }
+        let tolerance = self.run.iter().fold(vertex.tolerance, |least, member| {
+            least.min(member.tolerance)
+        });
+        let budget = MERGE_SHARE * tolerance.length();
+        if before.feedrate.to_bits() != vertex.feedrate.to_bits() {
+            let shorter = (vertex.point - before.point)
+                .norm()
+                .min((before.point - self.anchor).norm());
+            if shorter > budget {
+                return None;
+            }
+        }
+        let bulge = self
+            .run
+            .iter()
+            .fold(vertex.bulge, |most, member| most.max(member.bulge));
+        let budget = (budget - bulge).max(0.0);
+        let span = vertex.point - self.anchor;
+        let square = span.norm_squared();
+        let mut furthest = 0.0_f64;
+        for member in &self.run {
+            let offset = member.point - self.anchor;
+            let share = if square > 0.0 {
+                (offset.dot(&span) / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            furthest = furthest.max((offset - span * share).norm_squared());
+            if furthest > budget * budget {
+                return None;
+            }
+        }
+        Some(furthest.sqrt() + bulge)
+    }
+}

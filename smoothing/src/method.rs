@@ -1,0 +1,84 @@
+//! Which corner motions a plan may use, and within what.
+//!
+//! Source: the comparison of section 2.4. Not here: the planning.
+
+use toolglide_kinematics::Limits;
+
+/// Which corner motions a plan may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// The fastest motion at every corner, stopping included.
+    Kcs,
+    /// Uninterrupted acceleration at every corner.
+    KcsUninterrupted,
+    /// Interrupted acceleration at every corner.
+    KcsInterrupted,
+    /// A full stop at every corner.
+    ExactStop,
+}
+
+impl Method {
+    /// All methods, the default first.
+    pub const ALL: [Self; 4] = [
+        Self::Kcs,
+        Self::KcsUninterrupted,
+        Self::KcsInterrupted,
+        Self::ExactStop,
+    ];
+
+    /// The name as commands and reports write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kcs => "kcs",
+            Self::KcsUninterrupted => "kcs-uninterrupted",
+            Self::KcsInterrupted => "kcs-interrupted",
+            Self::ExactStop => "exact-stop",
+        }
+    }
+
+    /// The method of a name.
+    #[must_use]
+    pub fn find(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+}
+
+/// What a plan must keep and may use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings<const N: usize> {
+    /// Limits of the axes.
+    pub limits: Limits<N>,
+    /// Which corner motions may be used.
+    pub method: Method,
+    /// Corners that the look-ahead window holds, at least 1. A window shorter than the way to a
+    /// stop costs time, never safety.
+    pub window: usize,
+}
+
+impl<const N: usize> Settings<N> {
+    /// The default method in a window of 512 corners.
+    #[must_use]
+    pub fn new(limits: Limits<N>) -> Self {
+        Self {
+            limits,
+            method: Method::Kcs,
+            window: 512,
+        }
+    }
+
+    /// The same with another method.
+    #[must_use]
+    pub fn with_method(mut self, method: Method) -> Self {
+        self.method = method;
+        self
+    }
+
+    /// The same with another window.
+    #[must_use]
+    pub fn with_window(mut self, window: usize) -> Self {
+        self.window = window;
+        self
+    }
+}

@@ -1,0 +1,109 @@
+//! A leg and the corner at its end, unrolled into pieces.
+//!
+//! Source: sections 3.2 and 3.3. Each leg and each corner is anchored at programmed points, so that
+//! rounding does not add up along the path. Not here: the choice of the corner.
+
+use crate::leg::Leg;
+use crate::turn::{Turn, TurnShape};
+use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance, Vector};
+use toolglide_profiles::{Connection, Feed, State};
+
+/// Most pieces of a leg, its corner and a pause.
+pub(crate) const MOST_PIECES: usize = 11;
+
+/// Unrolls the leg between two corner motions.
+pub(crate) fn unroll_leg<const N: usize>(
+    leg: &Leg<N>,
+    from: &TurnShape,
+    to: &TurnShape,
+    mut take: impl FnMut(Piece<N>),
+) {
+    let connection = Connection {
+        from: [from.speed, from.acceleration],
+        to: [to.speed, to.acceleration],
+        limits: leg.limits,
+    };
+    let length = (leg.length - from.reach - to.reach).max(0.0);
+    let feed = match Feed::over(length, &connection) {
+        Ok(feed) => feed,
+        Err(error) => {
+            debug_assert!(false, "the window promised that this fits: {error}");
+            return;
+        }
+    };
+    let Some(last) = feed.phases().iter().rposition(|phase| phase.duration > 0.0) else {
+        return;
+    };
+    let end = if to.reach > 0.0 {
+        leg.end - leg.direction * to.reach
+    } else {
+        leg.end
+    };
+    let mut state = State {
+        position: from.reach,
+        ..State::moving(from.speed, from.acceleration)
+    };
+    for (index, phase) in feed.phases().iter().enumerate() {
+        if phase.duration <= 0.0 {
+            continue;
+        }
+        state.jerk = phase.jerk;
+        let next = state.after(phase.duration);
+        let at = |position: f64| {
+            if position > 0.0 {
+                leg.start + leg.direction * position
+            } else {
+                leg.start
+            }
+        };
+        let start = Sample {
+            position: at(state.position),
+            velocity: leg.direction * state.velocity,
+            acceleration: leg.direction * state.acceleration,
+            jerk: leg.direction * state.jerk,
+        };
+        let piece_end = if index == last {
+            end
+        } else {
+            at(next.position)
+        };
+        take(Piece::new(&start, phase.duration, piece_end, leg.serves));
+        state = next;
+    }
+}
+
+/// The corner between two legs.
+pub(crate) fn corner_between<const N: usize>(
+    leg: &Leg<N>,
+    next: &Leg<N>,
+    tolerance: Tolerance,
+) -> Corner<N> {
+    Corner {
+        point: leg.end,
+        incoming: leg.direction,
+        outgoing: next.direction,
+        speed_in: leg.limits.velocity,
+        speed_out: next.limits.velocity,
+        tolerance,
+    }
+}
+
+/// Unrolls the corner motion between two legs.
+pub(crate) fn unroll_corner<const N: usize>(
+    shape: &TurnShape,
+    corner: Corner<N>,
+    leg: &Leg<N>,
+    next: &Leg<N>,
+    take: impl FnMut(Piece<N>),
+) {
+    let serves = Serves {
+        first: leg.serves.first,
+        last: next.serves.last,
+    };
+    Turn::new(*shape, corner).pieces(serves, take);
+}
+
+/// Where the motion stands when it rests at the end of a leg.
+pub(crate) fn rest_at<const N: usize>(leg: &Leg<N>) -> Vector<N> {
+    leg.end
+}
