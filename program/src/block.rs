@@ -176,6 +176,7 @@ impl Block {
     ) -> Result<(), Fault> {
         let code = code_of(word, 1, "a number from 0 to 999 with one decimal at most")?;
         match preparatory(code.tenths().unwrap_or_default()) {
+            Ok((Group::Motion, meaning)) => self.take_motion(meaning, code, word.span),
             Ok((group, meaning)) => {
                 self.take(group, code, word.span)?;
                 self.set(meaning);
@@ -227,6 +228,21 @@ impl Block {
         }
         self.taken |= 1 << group as u32;
         self.takers[group as usize] = (code, span);
+        Ok(())
+    }
+
+    /// Beside another motion code `G80` has nothing to say: headers of programs often cancel a
+    /// cycle and begin a motion in one block.
+    fn take_motion(&mut self, meaning: Meaning, code: Code, span: Span) -> Result<(), Fault> {
+        let cancels = meaning == Meaning::Motion(Motion::Off);
+        if cancels && self.motion.is_some() {
+            return Ok(());
+        }
+        if self.motion == Some(Motion::Off) {
+            self.taken &= !(1 << Group::Motion as u32);
+        }
+        self.take(Group::Motion, code, span)?;
+        self.set(meaning);
         Ok(())
     }
 
@@ -285,7 +301,7 @@ fn code_of(word: Word, step: u16, bound: &'static str) -> Result<Code, Fault> {
 fn unread_fault(code: Code, span: Span, unread: Unread) -> Fault {
     let reason = match unread {
         Unread::Known(what) | Unread::Harmless(what) => Reason::NotSupported { code, what },
-        Unread::Unknown => Reason::UnknownCode { code },
+        Unread::Unknown | Unread::UnknownHarmless => Reason::UnknownCode { code },
     };
     Fault::new(span, reason)
 }
@@ -297,7 +313,8 @@ fn skip(
     settings: &Settings,
     remarks: &mut Vec<Remark>,
 ) -> Result<(), Fault> {
-    if settings.lenient && matches!(unread, Unread::Harmless(_)) {
+    let harmless = matches!(unread, Unread::Harmless(_) | Unread::UnknownHarmless);
+    if settings.lenient && harmless {
         remarks.push((fault.span, Notice::Skipped(fault.reason)));
         Ok(())
     } else {

@@ -205,6 +205,8 @@ pub(crate) enum Unread {
     Harmless(&'static str),
     /// Not known.
     Unknown,
+    /// Not known, but of a kind that moves no axis.
+    UnknownHarmless,
 }
 
 /// Meaning of a `G` code.
@@ -279,7 +281,7 @@ pub(crate) fn miscellaneous(tenths: u16) -> Result<(Group, Meaning), Unread> {
         47 | 97..=99 => return Err(Unread::Known("jumps and subroutines")),
         70..=73 => return Err(Unread::Known("saving and restoring the modal state")),
         128 | 129 | 428..=430 => return Err(Unread::Known("change of the kinematics")),
-        _ => return Err(Unread::Harmless("unknown to this reader")),
+        _ => return Err(Unread::UnknownHarmless),
     })
 }
 

@@ -27,9 +27,9 @@
 //! | `G40` `G49` `G54` | accepted: there are no offsets |
 //! | `G61` `G61.1` | the motion comes to rest at the end of every move |
 //! | `G64` | corners are rounded within the tolerance: `P`, or that of the [`Settings`] without one. `Q` is accepted; merging short moves never leaves `P`, so `Q` grants nothing more |
-//! | `G80` | no motion mode: axis words need a motion word from here |
+//! | `G80` | no motion mode: axis words need a motion word from here. Of no effect beside another motion word |
 //! | `G90` `G91` | coordinates absolute, incremental |
-//! | `G93` `G94` | `F` is one over the minutes of the move, needed by every `G1` `G2` `G3`; `F` is length units a minute |
+//! | `G93` `G94` | `F` is one over the minutes of the move, needed by every `G1` `G2` `G3` and ignored beside others; `F` is length units a minute. From one to the other `F` is forgotten |
 //! | `F` | feedrate. By the order of execution it is read before `G20` or `G21` of the same block |
 //! | `S` `T` | spindle speed and tool: carried, of no effect on the motion |
 //! | `M0` `M1` `M60` | the motion comes to rest: a dwell of no duration |

@@ -109,10 +109,11 @@ impl Modal {
         if let Some(value) = not_negative(block, b'P', "tolerance")?
             && !settings.override_tolerance
         {
-            self.tolerance = Tolerance::new(self.units.length(value)).map_err(|_| {
-                let quantity = "tolerance";
-                Fault::new(block.span(b'P'), Reason::NotPositive { quantity, value })
-            })?;
+            let at = |reason| Fault::new(block.span(b'P'), reason);
+            let length = self.units.bounded_length('P', value).map_err(at)?;
+            let quantity = "tolerance";
+            self.tolerance =
+                Tolerance::new(length).map_err(|_| at(Reason::NotPositive { quantity, value }))?;
         }
         Ok(())
     }

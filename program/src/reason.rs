@@ -207,7 +207,7 @@ pub enum Reason {
         speed: f64,
     },
     /// An arc without centre and radius.
-    #[error("arc has neither centre nor radius: write {offsets} or R")]
+    #[error("arc has neither centre nor radius: write {offsets}, or R")]
     ArcCenterMissing {
         /// Offsets that would do in this plane.
         offsets: &'static str,
