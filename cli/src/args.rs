@@ -1,0 +1,180 @@
+//! What may be asked for on the command line, checked value by value.
+//!
+//! Source: every quantity is positive and finite unless it is a coordinate. Not here: what a
+//! machine or a program makes of the values.
+
+use crate::planner::METHODS;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Plans smooth motion for machine tools and judges it.
+#[derive(Debug, Parser)]
+#[command(name = "toolglide", version, about, max_term_width = 100)]
+pub(crate) struct CommandLine {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Plan a part program: set-points, summary, plot.
+    Plan(PlanArgs),
+    /// Judge set-points, whoever made them, against a program and the limits of a machine.
+    Verify(VerifyArgs),
+    /// List the machines there are, or describe one.
+    Machines(MachinesArgs),
+    /// Print completions for a shell.
+    Completions {
+        /// Which shell.
+        shell: clap_complete::Shell,
+    },
+}
+
+/// The program, and the limits that its motion must keep.
+#[derive(Debug, Args)]
+pub(crate) struct JobArgs {
+    /// Part program (RS274/NGC); - reads standard input.
+    #[arg(value_name = "PROGRAM")]
+    pub(crate) program: PathBuf,
+    /// Registered machine, or machine file.
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "gantry")]
+    pub(crate) machine: String,
+    /// Corner tolerance, mm; overrides the machine and the P of G64 in the program.
+    #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Largest velocity, mm/s: one number, or one per axis as in 500,500,250.
+    #[arg(long, value_name = "V", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) max_velocity: Option<PerAxis>,
+    /// Largest acceleration, mm/s², as above.
+    #[arg(long, value_name = "A", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) max_acceleration: Option<PerAxis>,
+    /// Largest jerk, mm/s³, as above.
+    #[arg(long, value_name = "J", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) max_jerk: Option<PerAxis>,
+    /// Where the motion starts in the coordinates of the program, mm.
+    #[arg(long, value_name = "X,Y,Z", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) start: Option<PerAxis>,
+    /// Skip what the program may ask for but a planner need not know, with warnings.
+    #[arg(long)]
+    pub(crate) lenient: bool,
+    /// Print one JSON object instead of the summary.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What to plan.
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// How corners are taken.
+    #[arg(long, default_value = METHODS[0].name, value_parser = PossibleValuesParser::new(METHODS.iter().map(|method| method.name)))]
+    pub(crate) method: String,
+    /// Time between two set-points, s [default: that of the machine].
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) period: Option<f64>,
+    /// Write the set-points as CSV to a file; - is standard output.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw the motion; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to judge.
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Set-points to judge: CSV with the columns t_s, x_mm, y_mm, z_mm.
+    #[arg(value_name = "SETPOINTS.csv")]
+    pub(crate) set_points: PathBuf,
+}
+
+/// Which machine to describe.
+#[derive(Debug, Args)]
+pub(crate) struct MachinesArgs {
+    /// Registered machine, or machine file.
+    pub(crate) name: Option<String>,
+    /// Print the JSON Schema of machine files.
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) schema: bool,
+}
+
+/// One number for all axes, or one for each.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PerAxis(pub(crate) Vec<f64>);
+
+fn number(text: &str) -> Result<f64, String> {
+    let value: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| format!("\"{text}\" is not a number"))?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("{value} is not finite"))
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        Err(format!("{value} is not positive"))
+    }
+}
+
+fn per_axis(text: &str) -> Result<PerAxis, String> {
+    text.split(',')
+        .map(positive)
+        .collect::<Result<_, _>>()
+        .map(PerAxis)
+}
+
+fn coordinates(text: &str) -> Result<PerAxis, String> {
+    text.split(',')
+        .map(number)
+        .collect::<Result<_, _>>()
+        .map(PerAxis)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        CommandLine::command().debug_assert();
+    }
+
+    #[test]
+    fn limits_are_one_number_or_one_per_axis() {
+        assert_eq!(per_axis("500"), Ok(PerAxis(vec![500.0])));
+        assert_eq!(per_axis("1, 2,3e2"), Ok(PerAxis(vec![1.0, 2.0, 300.0])));
+        assert_eq!(coordinates("-1,0,2"), Ok(PerAxis(vec![-1.0, 0.0, 2.0])));
+    }
+
+    #[test]
+    fn what_is_not_positive_and_finite_is_refused_with_its_value() {
+        for (text, reason) in [
+            ("nan", "NaN is not finite"),
+            ("inf", "inf is not finite"),
+            ("0", "0 is not positive"),
+            ("-2", "-2 is not positive"),
+            ("1e999", "inf is not finite"),
+            ("", "\"\" is not a number"),
+            ("3mm", "\"3mm\" is not a number"),
+        ] {
+            assert_eq!(positive(text), Err(reason.to_owned()), "{text}");
+        }
+        assert!(per_axis("1,,2").is_err(), "an empty place");
+    }
+}

@@ -1,0 +1,127 @@
+//! Why a run ends without a result, and which exit code says so.
+//!
+//! Not here: a verification that failed, which is a result.
+
+use std::path::PathBuf;
+use thiserror::Error;
+use toolglide_kinematics::PlanError;
+use toolglide_machines::MachineError;
+use toolglide_program::ProgramError;
+
+/// Everything is done and inside the limits.
+pub const DONE: u8 = 0;
+/// Everything is done, but the motion breaks a limit.
+pub const OUTSIDE: u8 = 1;
+/// Wrong use or wrong input: there is no result.
+pub const REFUSED: u8 = 2;
+/// Stopped from the keyboard, as shells count it.
+pub const INTERRUPTED: u8 = 130;
+
+/// Why a run ends without a result.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CliError {
+    /// The machine is refused.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// An option has a value that it must not have.
+    #[error("{option}: {value} was given, but {bound}")]
+    Option {
+        /// Which option.
+        option: &'static str,
+        /// What was given.
+        value: String,
+        /// What it must be.
+        bound: String,
+    },
+    /// A file cannot be read.
+    #[error("{}: cannot be read: {reason}", file.display())]
+    Read {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        reason: std::io::Error,
+    },
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {reason}", file.display())]
+    Write {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        reason: std::io::Error,
+    },
+    /// A line of the program is refused.
+    #[error("{program}:{line}: {reason}")]
+    Line {
+        /// The program.
+        program: String,
+        /// Line, counted from 1.
+        line: u32,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A row of set-points is refused.
+    #[error("{}:{line}: {reason}", file.display())]
+    Row {
+        /// The file.
+        file: PathBuf,
+        /// Line, counted from 1; 0 when the file is empty.
+        line: u64,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The planner refuses a move.
+    #[error("{program}:{line}: {reason}")]
+    Plan {
+        /// The program.
+        program: String,
+        /// Line, counted from 1.
+        line: u32,
+        /// What is wrong.
+        reason: PlanError,
+    },
+    /// The program is refused; the reason names the place.
+    #[error("{0}")]
+    Program(Box<ProgramError>),
+    /// The plot cannot be drawn.
+    #[error("{}: cannot be drawn: {reason}", file.display())]
+    Plot {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The summary cannot be written as JSON.
+    #[error("the summary cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Whoever read our output has seen enough.
+    #[error("the reader of the output has gone")]
+    BrokenPipe,
+    /// Stopped from the keyboard.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+impl CliError {
+    /// A file that cannot be written; a reader that has gone is no fault of anybody.
+    pub fn write(file: impl Into<PathBuf>, reason: std::io::Error) -> Self {
+        if reason.kind() == std::io::ErrorKind::BrokenPipe {
+            Self::BrokenPipe
+        } else {
+            Self::Write {
+                file: file.into(),
+                reason,
+            }
+        }
+    }
+
+    /// The exit code that says so.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::BrokenPipe => DONE,
+            Self::Interrupted => INTERRUPTED,
+            _ => REFUSED,
+        }
+    }
+}

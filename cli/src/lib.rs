@@ -1,0 +1,88 @@
+//! The `toolglide` command as a library: [`run`] takes arguments and streams and gives the exit
+//! code, so that tests and other programs need no process.
+//!
+//! Exit codes: [`DONE`] when all is well, [`OUTSIDE`] when the motion breaks a limit, [`REFUSED`] for
+//! wrong use or wrong input, [`INTERRUPTED`] when stopped from the keyboard.
+
+mod args;
+mod error;
+mod interrupt;
+mod machines;
+mod output;
+mod pipeline;
+mod plan;
+mod planner;
+mod plot;
+mod progress;
+mod set_points;
+mod setup;
+mod source;
+mod summary;
+mod table;
+mod travel;
+mod verify;
+
+pub use error::{CliError, DONE, INTERRUPTED, OUTSIDE, REFUSED};
+pub use interrupt::interrupt;
+pub use planner::{METHODS, MethodName};
+
+use args::{Command, CommandLine};
+use clap::{CommandFactory, Parser};
+use std::ffi::OsString;
+use std::io::Write;
+
+/// Runs the command with the given arguments, the first of which is the name of the program.
+///
+/// Results go to `out`, messages to `err`.
+///
+/// # Examples
+/// ```
+/// let (mut out, mut err) = (Vec::new(), Vec::new());
+/// let code = toolglide_cli::run(["toolglide", "machines"], &mut out, &mut err);
+/// assert_eq!(code, toolglide_cli::DONE);
+/// assert!(String::from_utf8(out)?.starts_with("gantry"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn run<I, T>(arguments: I, out: &mut dyn Write, err: &mut dyn Write) -> u8
+where
+    I: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    let command = match CommandLine::try_parse_from(arguments) {
+        Ok(line) => line.command,
+        Err(message) => {
+            // Help is what was asked for; anything else is a refusal.
+            let asked = !message.use_stderr();
+            let _ = if asked {
+                write!(out, "{message}")
+            } else {
+                write!(err, "{message}")
+            };
+            return if asked { DONE } else { REFUSED };
+        }
+    };
+    let outcome = match command {
+        Command::Plan(args) => plan::plan(&args, out, err),
+        Command::Verify(args) => verify::verify(&args, out, err),
+        Command::Machines(args) => machines::machines(&args, out).map(|()| DONE),
+        Command::Completions { shell } => {
+            let mut command = CommandLine::command();
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut command, "toolglide", &mut text);
+            out.write_all(&text)
+                .map_err(|reason| CliError::write("standard output", reason))
+                .map(|()| DONE)
+        }
+    };
+    let outcome = outcome.and_then(|code| {
+        out.flush()
+            .map_err(|reason| CliError::write("standard output", reason))
+            .map(|()| code)
+    });
+    outcome.unwrap_or_else(|refused| {
+        if !matches!(refused, CliError::BrokenPipe) {
+            let _ = writeln!(err, "toolglide: {refused}");
+        }
+        refused.exit_code()
+    })
+}

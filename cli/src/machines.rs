@@ -1,0 +1,69 @@
+//! Lists the machines there are and describes one.
+
+use crate::args::MachinesArgs;
+use crate::error::CliError;
+use crate::setup::machine;
+use std::fmt::Write as _;
+use std::io::Write;
+use toolglide_kinematics::AxisKind;
+use toolglide_machines::{models, schema};
+
+/// Runs the command.
+pub(crate) fn machines(args: &MachinesArgs, out: &mut dyn Write) -> Result<(), CliError> {
+    let text = if args.schema {
+        let mut text = serde_json::to_string_pretty(&schema())?;
+        text.push('\n');
+        text
+    } else if let Some(name) = &args.name {
+        described(name)?
+    } else {
+        listed()
+    };
+    out.write_all(text.as_bytes())
+        .map_err(|reason| CliError::write("standard output", reason))
+}
+
+fn listed() -> String {
+    let mut text = String::new();
+    for model in models() {
+        let _ = writeln!(text, "{:<12} {}", model.name, model.summary);
+    }
+    text.push_str(
+        "\nA machine file (TOML) describes any other; --schema prints its JSON Schema.\n",
+    );
+    text
+}
+
+fn described(name: &str) -> Result<String, CliError> {
+    let (config, machine) = machine(name)?;
+    let mut text = format!(
+        "{} (model {})\n\naxis   velocity   acceleration   jerk         travel\n",
+        config.name, config.model
+    );
+    for axis in machine.axes() {
+        let (unit, factor) = match axis.kind {
+            AxisKind::Linear => ("mm", 1.0),
+            AxisKind::Rotary => ("deg", 1.0_f64.to_degrees()),
+        };
+        let travel = axis.travel.map_or_else(
+            || "no ends".to_owned(),
+            |(low, high)| format!("{} to {} {unit}", low * factor, high * factor),
+        );
+        let _ = writeln!(
+            text,
+            "{:<6} {:<10} {:<14} {:<12} {travel}",
+            axis.name,
+            axis.limits.velocity() * factor,
+            axis.limits.acceleration() * factor,
+            axis.limits.jerk() * factor,
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\nvelocity in mm/s (deg/s), acceleration per s, jerk per s twice\n\
+         tolerance {} mm, set-points every {} s",
+        machine.default_tolerance().length(),
+        machine.set_point_period().seconds()
+    );
+    Ok(text)
+}

@@ -1,0 +1,75 @@
+//! The methods by name: the only file that knows which planners there are.
+//!
+//! Everything else speaks to [`MotionPlanner`].
+
+use crate::error::CliError;
+use toolglide_kinematics::{Limits, MotionPlanner, Vector};
+use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
+
+/// A method of planning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MethodName {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does at corners.
+    pub summary: &'static str,
+}
+
+/// All methods, the default first.
+pub const METHODS: &[MethodName] = &[
+    MethodName {
+        name: "kcs",
+        summary: "the fastest corner motion, corner by corner",
+    },
+    MethodName {
+        name: "kcs-uninterrupted",
+        summary: "acceleration is carried through every corner",
+    },
+    MethodName {
+        name: "kcs-interrupted",
+        summary: "acceleration is zero where a corner begins and ends",
+    },
+    MethodName {
+        name: "exact-stop",
+        summary: "a full stop at every corner",
+    },
+];
+
+/// The planner of a method, at rest at `start`.
+pub(crate) fn planner<const N: usize>(
+    method: &str,
+    start: Vector<N>,
+    limits: Limits<N>,
+) -> Result<Box<dyn MotionPlanner<N>>, CliError> {
+    if let Some(method) = Method::find(method) {
+        let settings = Settings::new(limits).with_method(method);
+        return Ok(Box::new(KinematicSmoothing::new(start, &settings)));
+    }
+    let names: Vec<_> = METHODS.iter().map(|method| method.name).collect();
+    Err(CliError::Option {
+        option: "--method",
+        value: format!("\"{method}\""),
+        bound: format!("there are {}", names.join(", ")),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_has_a_planner() {
+        let limits = Limits::<2>::uniform(1.0, 1.0, 1.0).unwrap();
+        for method in METHODS {
+            assert!(
+                planner(method.name, Vector::zeros(), limits).is_ok(),
+                "{}",
+                method.name
+            );
+        }
+        assert!(
+            planner("spline", Vector::zeros(), limits).is_err(),
+            "unknown"
+        );
+    }
+}

@@ -1,0 +1,438 @@
+//! Feedrate, velocity, acceleration and jerk over time, with their limits.
+
+use super::canvas::{Anchor, Canvas, Outline};
+use super::chart::{Chart, SMALL, width_of};
+use super::envelope::Envelope;
+use super::{Plot, color, feed_curve, speed_curve};
+
+/// A limit farther away than this many times the peak is told instead of drawn.
+const FAR_LIMIT: f64 = 3.0;
+
+/// Rapids faster than this many times the fastest cut are told instead of drawn.
+const FAR_RAPID: f64 = 2.0;
+
+/// Numbers from here on are shown in thousands: mm/s³ become m/s³.
+const THOUSANDS: f64 = 20_000.0;
+
+/// What goes back less than this share of what goes forward gets no more room than that.
+const BACKWARD: f64 = 0.08;
+
+/// Room above the highest curve, as a share.
+const HEADROOM: f64 = 1.12;
+
+/// A curve within this many pixels of height is a line however it swings.
+const AREA: f64 = 6.0;
+
+/// A curve that goes this many times its height to and fro nearby is drawn as an area.
+const SWINGS: f64 = 3.0;
+
+/// Stretches on either side that count as nearby: about ten pixels in all.
+const NEAR: usize = 10;
+
+/// Stretches on either side that the edge of an area takes in.
+const SMOOTH: usize = 2;
+
+/// What the eye does not see, pixels.
+const SUBPIXEL: f64 = 0.05;
+
+/// One chart of the axes.
+struct Panel<'a> {
+    title: &'a str,
+    unit: &'a str,
+    unit_of_thousands: &'a str,
+    first_curve: usize,
+    limits: &'a [f64],
+}
+
+/// Draws the four charts, from the top down, in a column.
+pub(crate) fn draw<const N: usize>(
+    plot: &Plot<N>,
+    canvas: &mut Canvas,
+    x: f64,
+    width: f64,
+    tops: [f64; 4],
+    height: f64,
+) {
+    let time = if plot.time > 0.0 { plot.time } else { 1.0 };
+    let chart = |top: f64, upward: (f64, f64)| Chart {
+        x,
+        y: top,
+        width,
+        height,
+        across: (0.0, time),
+        upward,
+    };
+    feedrate(plot, canvas, |upward| chart(tops[0], upward));
+    let panels = [
+        Panel {
+            title: "Velocity",
+            unit: "mm/s",
+            unit_of_thousands: "m/s",
+            first_curve: 0,
+            limits: plot.limits.velocity().as_slice(),
+        },
+        Panel {
+            title: "Acceleration",
+            unit: "mm/s²",
+            unit_of_thousands: "m/s²",
+            first_curve: N,
+            limits: plot.limits.acceleration().as_slice(),
+        },
+        Panel {
+            title: "Jerk",
+            unit: "mm/s³",
+            unit_of_thousands: "m/s³",
+            first_curve: 2 * N,
+            limits: plot.limits.jerk().as_slice(),
+        },
+    ];
+    for (panel, top) in panels.iter().zip(&tops[1..]) {
+        let lowest = panel.first_curve == 2 * N;
+        axes(plot, canvas, panel, |upward| chart(*top, upward), lowest);
+    }
+}
+
+fn feedrate<const N: usize>(
+    plot: &Plot<N>,
+    canvas: &mut Canvas,
+    chart: impl Fn((f64, f64)) -> Chart,
+) {
+    let fastest = plot.curves.peak(speed_curve(N));
+    let cutting = plot.cutting_speed.max(plot.curves.peak(feed_curve(N)));
+    let too_fast = cutting > 0.0 && fastest > FAR_RAPID * cutting;
+    let most = if too_fast {
+        cutting
+    } else {
+        fastest.max(cutting)
+    };
+    let chart = chart((0.0, if most > 0.0 { HEADROOM * most } else { 1.0 }));
+    chart.draw_grid(canvas, false);
+    canvas.clip(chart.x, chart.y, chart.width, chart.height);
+    curve(
+        canvas,
+        &chart,
+        &plot.curves,
+        speed_curve(N),
+        1.0,
+        color::MOTION,
+    );
+    programmed(plot, canvas, &chart);
+    canvas.unclip();
+    chart.draw_frame(canvas, "Feedrate along the path, mm/s");
+    let mut entries = vec![("planned", color::MOTION, false)];
+    if cutting > 0.0 {
+        entries.push(("programmed", color::PROGRAMMED, true));
+    }
+    let told = format!("rapids up to {fastest:.0}");
+    if too_fast {
+        entries.push((&told, "", false));
+    }
+    legend(canvas, &chart, &entries);
+}
+
+/// The programmed feedrate as a dashed step line; rapids have none.
+fn programmed<const N: usize>(plot: &Plot<N>, canvas: &mut Canvas, chart: &Chart) {
+    let mut outline = Outline::default();
+    let mut last: Option<(usize, f64)> = None;
+    for (stretch, _, feed) in plot.curves.curve(feed_curve(N)) {
+        let begin = plot.curves.begin(stretch);
+        match last {
+            Some((before, former)) if before + 1 == stretch => {
+                if (former - feed).abs() > 0.0 {
+                    outline.line_to(chart.at(begin, former));
+                    outline.line_to(chart.at(begin, feed));
+                }
+            }
+            Some((before, former)) => {
+                outline.line_to(chart.at(plot.curves.begin(before + 1), former));
+                outline.move_to(chart.at(begin, feed));
+            }
+            None => outline.move_to(chart.at(begin, feed)),
+        }
+        last = Some((stretch, feed));
+    }
+    if let Some((stretch, feed)) = last {
+        outline.line_to(chart.at(plot.curves.begin(stretch + 1).min(plot.time), feed));
+    }
+    let style = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" stroke-dasharray=\"7 5\"",
+        color::PROGRAMMED
+    );
+    canvas.path(&outline, &style);
+}
+
+fn axes<const N: usize>(
+    plot: &Plot<N>,
+    canvas: &mut Canvas,
+    panel: &Panel<'_>,
+    chart: impl Fn((f64, f64)) -> Chart,
+    lowest: bool,
+) {
+    let peak = (0..N)
+        .map(|axis| plot.curves.peak(panel.first_curve + axis))
+        .fold(0.0, f64::max);
+    let drawn: Vec<bool> = panel
+        .limits
+        .iter()
+        .map(|&limit| peak <= 0.0 || limit <= FAR_LIMIT * peak)
+        .collect();
+    let most = panel
+        .limits
+        .iter()
+        .zip(&drawn)
+        .filter(|(_, drawn)| **drawn)
+        .fold(peak, |most, (&limit, _)| most.max(limit));
+    let scale = if most >= THOUSANDS { 1e-3 } else { 1.0 };
+    let unit = if most >= THOUSANDS {
+        panel.unit_of_thousands
+    } else {
+        panel.unit
+    };
+    let bound = HEADROOM * most * scale;
+    // What only goes forward needs no room for going back.
+    let lowest_value = (0..N)
+        .map(|axis| plot.curves.least(panel.first_curve + axis))
+        .fold(0.0, f64::min);
+    let forward = !drawn.contains(&true) && lowest_value > -BACKWARD * most;
+    let chart = chart((if forward { -BACKWARD * bound } else { -bound }, bound));
+    chart.draw_grid(canvas, lowest);
+    canvas.clip(chart.x, chart.y, chart.width, chart.height);
+    for axis in (0..N).rev().filter(|&axis| plot.moves(axis)) {
+        let color = color::AXES[axis % color::AXES.len()];
+        curve(
+            canvas,
+            &chart,
+            &plot.curves,
+            panel.first_curve + axis,
+            scale,
+            color,
+        );
+    }
+    let alike = panel
+        .limits
+        .windows(2)
+        .all(|pair| pair[0].to_bits() == pair[1].to_bits());
+    for axis in 0..if alike { N.min(1) } else { N } {
+        if drawn[axis] {
+            let color = if alike {
+                color::BOUND
+            } else {
+                color::AXES[axis % color::AXES.len()]
+            };
+            let style = format!("stroke=\"{color}\" stroke-width=\"1.3\" stroke-dasharray=\"8 5\"");
+            for limit in [panel.limits[axis] * scale, -panel.limits[axis] * scale] {
+                let (_, y) = chart.at(0.0, limit);
+                canvas.line((chart.x, y), (chart.x + chart.width, y), &style);
+            }
+        }
+    }
+    canvas.unclip();
+    chart.draw_frame(canvas, &format!("{}, {unit}", panel.title));
+    if lowest {
+        chart.draw_name_across(canvas, "time, s");
+    }
+    let names: Vec<String> = plot.letters.iter().map(char::to_string).collect();
+    let mut entries: Vec<(&str, &str, bool)> = names
+        .iter()
+        .zip(color::AXES)
+        .enumerate()
+        .filter(|&(axis, _)| plot.moves(axis))
+        .map(|(_, (name, color))| (name.as_str(), color, false))
+        .collect();
+    let told = told_limits(panel, &names, &drawn, alike);
+    if drawn.iter().any(|&drawn| drawn) {
+        let color = if alike {
+            color::BOUND
+        } else {
+            color::PROGRAMMED
+        };
+        entries.push(("limit", color, true));
+    }
+    if !told.is_empty() {
+        entries.push((&told, "", false));
+    }
+    legend(canvas, &chart, &entries);
+}
+
+/// Limits that are too far away to be drawn, in words.
+fn told_limits(panel: &Panel<'_>, names: &[String], drawn: &[bool], alike: bool) -> String {
+    if alike {
+        return match (drawn.first(), panel.limits.first()) {
+            (Some(false), Some(limit)) => format!("limit ±{limit} {}", panel.unit),
+            _ => String::new(),
+        };
+    }
+    let told: Vec<String> = names
+        .iter()
+        .zip(drawn)
+        .zip(panel.limits)
+        .filter(|((_, drawn), _)| !**drawn)
+        .map(|((name, _), limit)| format!("{name} ±{limit}"))
+        .collect();
+    if told.is_empty() {
+        String::new()
+    } else {
+        format!("limits {} {}", told.join(", "), panel.unit)
+    }
+}
+
+/// A curve: a line where it is one, an area where it swings faster than the chart can show.
+fn curve(
+    canvas: &mut Canvas,
+    chart: &Chart,
+    curves: &Envelope,
+    curve: usize,
+    scale: f64,
+    color: &str,
+) {
+    let half = 0.5 * curves.width();
+    let bars: Vec<Bar> = curves
+        .curve(curve)
+        .map(|(stretch, low, high)| {
+            let middle = curves.begin(stretch) + half;
+            let (x, top) = chart.at(middle, high * scale);
+            let (_, bottom) = chart.at(middle, low * scale);
+            Bar { x, top, bottom }
+        })
+        .collect();
+    let dense = dense(&bars);
+    let mut area = Outline::default();
+    let mut edge = Outline::default();
+    let mut line = Outline::default();
+    let mut begin = 0;
+    for run in dense.chunk_by(|one, two| one == two) {
+        let range = begin..begin + run.len();
+        begin += run.len();
+        let bars: Vec<Bar> = if run[0] {
+            range
+                .map(|at| Bar {
+                    x: bars[at].x,
+                    ..hull(near(&bars, at, SMOOTH))
+                })
+                .collect()
+        } else {
+            bars[range].to_vec()
+        };
+        if run[0] {
+            let there = bars.iter().map(|bar| (bar.x, bar.top));
+            let back = bars.iter().rev().map(|bar| (bar.x, bar.bottom));
+            area.stretch(there.clone().chain(back));
+            area.close();
+            edge.stretch(there);
+            edge.stretch(bars.iter().map(|bar| (bar.x, bar.bottom)));
+            // The line goes on behind the area where it left.
+            if let Some(last) = bars.last() {
+                line.move_to((last.x, 0.5 * (last.top + last.bottom)));
+            }
+        } else {
+            add_line(&mut line, &bars);
+        }
+    }
+    canvas.path(&area, &format!("fill=\"{color}\" fill-opacity=\"0.3\""));
+    let style = format!("fill=\"none\" stroke=\"{color}\" stroke-linejoin=\"round\"");
+    canvas.path(
+        &edge,
+        &format!("{style} stroke-width=\"0.7\" stroke-opacity=\"0.75\""),
+    );
+    canvas.path(&line, &format!("{style} stroke-width=\"1.4\""));
+}
+
+/// Least and greatest value of a curve in a stretch, in pixels.
+#[derive(Clone, Copy, Debug)]
+struct Bar {
+    x: f64,
+    top: f64,
+    bottom: f64,
+}
+
+/// Where the curve swings to and fro within a few pixels, so that a line would be a smear.
+fn dense(bars: &[Bar]) -> Vec<bool> {
+    let swings = |near: &[Bar]| {
+        let way: f64 = near.iter().map(|bar| bar.bottom - bar.top).sum();
+        let around = hull(near);
+        let span = around.bottom - around.top;
+        span > AREA && way > SWINGS * span
+    };
+    let mut dense: Vec<bool> = (0..bars.len())
+        .map(|at| swings(near(bars, at, NEAR)))
+        .collect();
+    let mut begin = 0;
+    let runs: Vec<(bool, usize)> = dense
+        .chunk_by(|one, two| one == two)
+        .map(|run| (run[0], run.len()))
+        .collect();
+    // A glimpse of a line within an area is no line.
+    for (index, (is_dense, length)) in runs.iter().enumerate() {
+        if !is_dense && *length < NEAR && index > 0 && index + 1 < runs.len() {
+            dense[begin..begin + length].fill(true);
+        }
+        begin += length;
+    }
+    dense
+}
+
+/// Up to `count` bars on either side of one.
+fn near(bars: &[Bar], at: usize, count: usize) -> &[Bar] {
+    &bars[at.saturating_sub(count)..(at + count + 1).min(bars.len())]
+}
+
+/// The bar around bars, at the middle of them.
+fn hull(bars: &[Bar]) -> Bar {
+    let nothing = Bar {
+        x: bars.get(bars.len() / 2).map_or(0.0, |bar| bar.x),
+        top: f64::INFINITY,
+        bottom: f64::NEG_INFINITY,
+    };
+    bars.iter().fold(nothing, |around, bar| Bar {
+        top: around.top.min(bar.top),
+        bottom: around.bottom.max(bar.bottom),
+        ..around
+    })
+}
+
+fn add_line(line: &mut Outline, bars: &[Bar]) {
+    for (index, bar) in bars.iter().enumerate() {
+        let level = |other: Option<&Bar>| {
+            other.is_some_and(|other| {
+                (other.top - bar.bottom).abs() < SUBPIXEL
+                    && (other.bottom - bar.top).abs() < SUBPIXEL
+            })
+        };
+        // The inner points of a level stretch add nothing.
+        if index > 0 && level(bars.get(index - 1)) && level(bars.get(index + 1)) {
+            continue;
+        }
+        let next = bars.get(index + 1);
+        let rising = next.is_none_or(|next| next.top + next.bottom <= bar.top + bar.bottom);
+        let (one, two) = if rising {
+            (bar.bottom, bar.top)
+        } else {
+            (bar.top, bar.bottom)
+        };
+        line.line_to((bar.x, one));
+        if bar.bottom - bar.top > SUBPIXEL {
+            line.line_to((bar.x, two));
+        }
+    }
+}
+
+/// Names of the curves, right-aligned above the frame.
+fn legend(canvas: &mut Canvas, chart: &Chart, entries: &[(&str, &str, bool)]) {
+    let mut x = chart.x + chart.width;
+    let y = chart.y - 8.0;
+    for &(name, color, dashed) in entries.iter().rev() {
+        canvas.text((x, y), Anchor::End, SMALL, "fill=\"#4a525b\"", name);
+        x -= width_of(name, SMALL) + 7.0;
+        if !color.is_empty() {
+            let dashes = if dashed {
+                " stroke-dasharray=\"6 4\""
+            } else {
+                ""
+            };
+            let style = format!("stroke=\"{color}\" stroke-width=\"2.4\"{dashes}");
+            canvas.line((x - 24.0, y - 4.5), (x, y - 4.5), &style);
+            x -= 24.0;
+        }
+        x -= 16.0;
+    }
+}

@@ -1,0 +1,167 @@
+//! The sharpest corner, seen from near: the programmed path, the motion, and the tolerance.
+
+use super::canvas::{Anchor, Canvas, through};
+use super::chart::{Chart, NORMAL};
+use super::color;
+use super::corner::SharpCorner;
+use toolglide_kinematics::Vector;
+
+/// How far around the corner is shown, tolerances.
+const WINDOW: f64 = 4.5;
+
+/// How far the middle lies inside the corner, tolerances.
+const INSIDE: f64 = 1.6;
+
+/// Points that are drawn of a piece of motion.
+const POINTS: u32 = 48;
+
+/// Tolerances below this are shown in µm, mm.
+const MICROMETRES: f64 = 0.25;
+
+/// Draws the corner into a part of the drawing; without one it says so.
+pub(crate) fn draw<const N: usize>(
+    corner: Option<&SharpCorner<N>>,
+    letters: &[char],
+    canvas: &mut Canvas,
+    x: f64,
+    y: f64,
+    width: f64,
+    height: f64,
+) {
+    let mut chart = Chart {
+        x,
+        y,
+        width,
+        height,
+        across: (-1.0, 1.0),
+        upward: (-1.0, 1.0),
+    };
+    let Some(corner) = corner else {
+        chart.draw_frame(canvas, "Sharpest corner");
+        let at = (x + 0.5 * width, y + 0.5 * height);
+        canvas.text(
+            at,
+            Anchor::Middle,
+            NORMAL,
+            "fill=\"#4a525b\"",
+            "the path has no corner",
+        );
+        return;
+    };
+    let tolerance = corner.tolerance.length();
+    let (scale, unit) = if tolerance < MICROMETRES {
+        (1e3, "µm")
+    } else {
+        (1.0, "mm")
+    };
+    let plane = plane(corner);
+    let place = |point: Vector<N>| {
+        let offset = (point - corner.point) * scale;
+        (offset[plane[0]], offset[plane[1]])
+    };
+    let inward = corner.outgoing - corner.incoming;
+    let middle = inward / inward.norm() * (INSIDE * tolerance * scale);
+    let half = WINDOW * tolerance * scale;
+    chart.across = (middle[plane[0]] - half, middle[plane[0]] + half);
+    chart.upward = (middle[plane[1]] - half, middle[plane[1]] + half);
+    let chart = chart.with_equal_scales();
+    chart.draw_grid(canvas, true);
+    canvas.clip(x, y, width, height);
+    let on_chart = |point: Vector<N>| {
+        let (across, upward) = place(point);
+        chart.at(across, upward)
+    };
+    let ring = format!(
+        "fill=\"{0}\" fill-opacity=\"0.06\" stroke=\"{0}\" stroke-width=\"1.4\" \
+         stroke-dasharray=\"7 5\"",
+        color::BOUND
+    );
+    canvas.circle(
+        on_chart(corner.point),
+        chart.pixels(tolerance * scale),
+        &ring,
+    );
+    let style = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"miter\"",
+        color::PROGRAMMED
+    );
+    canvas.path(
+        &through(corner.path.iter().map(|&point| on_chart(point))),
+        &style,
+    );
+    let motion: Vec<Vector<N>> = motion(corner).collect();
+    let style = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"2.6\" stroke-linejoin=\"round\"",
+        color::MOTION
+    );
+    canvas.path(
+        &through(motion.iter().map(|&point| on_chart(point))),
+        &style,
+    );
+    let nearest = motion.iter().copied().min_by(|one, two| {
+        let distance = |point: &Vector<N>| (point - corner.point).norm();
+        distance(one).total_cmp(&distance(two))
+    });
+    if let Some(nearest) = nearest {
+        let style = format!("stroke=\"{}\" stroke-width=\"1.2\"", color::MOTION);
+        canvas.line(on_chart(corner.point), on_chart(nearest), &style);
+        canvas.circle(
+            on_chart(nearest),
+            3.4,
+            &format!("fill=\"{}\"", color::MOTION),
+        );
+    }
+    canvas.circle(
+        on_chart(corner.point),
+        3.0,
+        &format!("fill=\"{}\"", color::PROGRAMMED),
+    );
+    canvas.unclip();
+    let place = if corner.line > 0 {
+        format!(", line {}", corner.line)
+    } else {
+        String::new()
+    };
+    chart.draw_frame(canvas, &format!("Sharpest corner{place}, {unit}"));
+    let passed = nearest.map_or(0.0, |nearest| (nearest - corner.point).norm());
+    let remark = format!(
+        "turn {:.1}°, passed at {:.3} of {:.3} {unit}",
+        corner.turn.to_degrees(),
+        passed * scale,
+        tolerance * scale
+    );
+    chart.draw_remark(canvas, &remark);
+    let letter = |axis: usize| letters.get(axis).copied().unwrap_or('?');
+    let name = format!(
+        "{} across, {} up, from the corner; grey: programmed, violet: motion, red: tolerance",
+        letter(plane[0]),
+        letter(plane[1])
+    );
+    chart.draw_name_across(canvas, &name);
+}
+
+/// Points of the motion, close enough to look like a curve where the window is.
+fn motion<const N: usize>(corner: &SharpCorner<N>) -> impl Iterator<Item = Vector<N>> + '_ {
+    let near = 4.0 * WINDOW * corner.tolerance.length();
+    corner.pieces.iter().flat_map(move |piece| {
+        let length = (piece.end() - piece.start()).norm();
+        let close = (piece.start() - corner.point).norm() < near + length;
+        let points = if close { POINTS } else { 1 };
+        (0..=points).map(move |step| {
+            piece.position_at(piece.duration() * f64::from(step) / f64::from(points))
+        })
+    })
+}
+
+/// The two axes between which the corner turns most.
+fn plane<const N: usize>(corner: &SharpCorner<N>) -> [usize; 2] {
+    let (one, two) = (corner.incoming, corner.outgoing);
+    let mut most = [0, 1];
+    let area = |[a, b]: [usize; 2]| (one[a] * two[b] - one[b] * two[a]).abs();
+    for pair in [[0, 2], [1, 2]] {
+        if pair[1] < N && area(pair) > area(most) * 1.01 {
+            most = pair;
+        }
+    }
+    most
+}

@@ -1,0 +1,44 @@
+//! How far the reading of a program has come, for whoever watches a terminal.
+//!
+//! The share is that of the bytes read. Nothing is shown where standard error is no terminal.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, Read};
+
+/// A reader that shows how far it has come, and takes the display away when it is dropped.
+#[derive(Debug)]
+pub(crate) struct Watched<R> {
+    reader: R,
+    bar: ProgressBar,
+}
+
+impl<R> Watched<R> {
+    /// Watches a reader of `length` bytes, where that is known.
+    pub(crate) fn new(reader: R, length: Option<u64>) -> Self {
+        let bar = match length {
+            Some(length) => ProgressBar::new(length),
+            None => ProgressBar::new_spinner(),
+        };
+        let style = ProgressStyle::with_template(
+            "{bar:40} {percent:>3} %  {binary_bytes_per_sec}  {elapsed} of about {duration}",
+        );
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        Self { reader, bar }
+    }
+}
+
+impl<R: Read> Read for Watched<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.bar.inc(count as u64);
+        Ok(count)
+    }
+}
+
+impl<R> Drop for Watched<R> {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

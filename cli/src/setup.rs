@@ -1,0 +1,190 @@
+//! The machine of a run, with what the command line changes about it.
+//!
+//! Not here: kinematics beyond straight axes, which no program reader or planner asks for yet.
+
+use crate::args::{JobArgs, PerAxis};
+use crate::error::CliError;
+use std::path::Path;
+use toolglide_kinematics::{
+    Axis, AxisKind, AxisLimits, Limits, MachineKinematics, SamplePeriod, Tolerance, Vector,
+};
+use toolglide_machines::{MachineConfig, find, load};
+
+/// Shortest period that is taken, s: below it a file of set-points has no end worth waiting for.
+const SHORTEST_PERIOD: f64 = 1e-9;
+
+/// The machine of a run.
+#[derive(Debug)]
+pub(crate) struct Setup {
+    /// Name of the machine.
+    pub(crate) machine: String,
+    /// Its axes, with the limits of this run.
+    pub(crate) axes: Vec<Axis>,
+    /// Tolerance where the program asks for none.
+    pub(crate) tolerance: Tolerance,
+    /// Whether the program may not ask for another.
+    pub(crate) override_tolerance: bool,
+    /// Period of the set-points.
+    pub(crate) period: SamplePeriod,
+    start: Vec<f64>,
+}
+
+/// The description of a registered machine or of a machine file, and the machine.
+pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinematics>), CliError> {
+    let path = Path::new(name);
+    let is_file = path.extension().is_some_and(|ending| ending == "toml") || path.is_file();
+    if !is_file {
+        let model = find(name)?;
+        let config = (model.preset)();
+        let machine = (model.build)(&config)?;
+        return Ok((config, machine));
+    }
+    let config = load(path)?;
+    let machine = find(&config.model)
+        .and_then(|model| (model.build)(&config))
+        .map_err(|reason| toolglide_machines::MachineError::InFile {
+            file: path.to_owned(),
+            reason: Box::new(reason),
+        })?;
+    Ok((config, machine))
+}
+
+impl Setup {
+    /// The machine that the command line asks for.
+    pub(crate) fn new(job: &JobArgs, period: Option<f64>) -> Result<Self, CliError> {
+        let (config, machine) = machine(&job.machine)?;
+        let letters = config.letters();
+        let linear = machine
+            .axes()
+            .iter()
+            .all(|axis| axis.kind == AxisKind::Linear);
+        if !linear || !matches!(letters.as_str(), "XY" | "XYZ") {
+            return Err(CliError::Option {
+                option: "--machine",
+                value: format!("\"{}\" with axes {letters}", config.name),
+                bound: "programs are planned for machines of straight axes X Y or X Y Z".to_owned(),
+            });
+        }
+        let axes = limited(machine.axes(), job)?;
+        let start = match &job.start {
+            Some(start) => one_per_axis("--start", start, axes.len())?,
+            None => vec![0.0; axes.len()],
+        };
+        for (axis, &position) in axes.iter().zip(&start) {
+            if let Some((low, high)) = axis.travel
+                && !(low..=high).contains(&position)
+            {
+                return Err(CliError::Option {
+                    option: "--start",
+                    value: format!("{} = {position}", axis.name),
+                    bound: format!("the travel of this axis is {low} to {high}"),
+                });
+            }
+        }
+        let tolerance = match job.tolerance {
+            Some(length) => Tolerance::new(length).map_err(|reason| CliError::Option {
+                option: "--tolerance",
+                value: length.to_string(),
+                bound: reason.to_string(),
+            })?,
+            None => machine.default_tolerance(),
+        };
+        Ok(Self {
+            machine: config.name,
+            axes,
+            tolerance,
+            override_tolerance: job.tolerance.is_some(),
+            period: checked_period(period.unwrap_or(machine.set_point_period().seconds()))?,
+            start,
+        })
+    }
+
+    /// The limits of this run, for as many axes as the machine has.
+    pub(crate) fn limits<const N: usize>(&self) -> Limits<N> {
+        Limits::new(std::array::from_fn(|axis| self.axes[axis].limits))
+    }
+
+    /// Where the motion starts.
+    pub(crate) fn start<const N: usize>(&self) -> Vector<N> {
+        Vector::from_fn(|axis, _| self.start[axis])
+    }
+
+    /// The start as the three coordinates of a program; an axis that is missing stays at 0.
+    pub(crate) fn start_point(&self) -> Vector<3> {
+        Vector::from_fn(|axis, _| self.start.get(axis).copied().unwrap_or(0.0))
+    }
+
+    /// Which of X, Y and Z the machine has.
+    pub(crate) fn has_axes(&self) -> [bool; 3] {
+        std::array::from_fn(|axis| axis < self.axes.len())
+    }
+
+    /// Letters of the axes.
+    pub(crate) fn letters(&self) -> Vec<char> {
+        self.axes.iter().map(|axis| axis.name).collect()
+    }
+}
+
+fn checked_period(seconds: f64) -> Result<SamplePeriod, CliError> {
+    let refused = |bound: String| CliError::Option {
+        option: "--period",
+        value: format!("{seconds} s"),
+        bound,
+    };
+    if seconds < SHORTEST_PERIOD {
+        return Err(refused(format!("it must be at least {SHORTEST_PERIOD} s")));
+    }
+    SamplePeriod::new(seconds).map_err(|reason| refused(reason.to_string()))
+}
+
+fn limited(axes: &[Axis], job: &JobArgs) -> Result<Vec<Axis>, CliError> {
+    let given = |option, values: &Option<PerAxis>| match values {
+        Some(values) => one_per_axis(option, values, axes.len()).map(Some),
+        None => Ok(None),
+    };
+    let velocity = given("--max-velocity", &job.max_velocity)?;
+    let acceleration = given("--max-acceleration", &job.max_acceleration)?;
+    let jerk = given("--max-jerk", &job.max_jerk)?;
+    let pick = |values: &Option<Vec<f64>>, index: usize, usual: f64| {
+        values
+            .as_ref()
+            .and_then(|values| values.get(index).copied())
+            .unwrap_or(usual)
+    };
+    axes.iter()
+        .enumerate()
+        .map(|(index, axis)| {
+            let limits = AxisLimits::new(
+                pick(&velocity, index, axis.limits.velocity()),
+                pick(&acceleration, index, axis.limits.acceleration()),
+                pick(&jerk, index, axis.limits.jerk()),
+            )
+            .map_err(|reason| CliError::Option {
+                option: "--max-...",
+                value: format!("a limit of axis {}", axis.name),
+                bound: reason.to_string(),
+            })?;
+            Ok(Axis {
+                limits,
+                ..axis.clone()
+            })
+        })
+        .collect()
+}
+
+fn one_per_axis(option: &'static str, values: &PerAxis, axes: usize) -> Result<Vec<f64>, CliError> {
+    let list = &values.0;
+    match list.len() {
+        1 if option != "--start" => Ok(vec![list[0]; axes]),
+        given if given == axes => Ok(list.clone()),
+        given => Err(CliError::Option {
+            option,
+            value: if given == 1 {
+                "1 number".to_owned()
+            } else {
+                format!("{given} numbers")
+            },
+            bound: format!("the machine has {axes} axes"),
+        }),
+    }
+}

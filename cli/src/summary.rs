@@ -1,0 +1,234 @@
+//! What came out, for a machinist and for a program.
+//!
+//! Source: the judge's report. Not here: judging.
+
+use crate::setup::Setup;
+use serde::Serialize;
+use std::fmt::Write;
+use toolglide_kinematics::verify::{Peak, Report, Violation};
+
+/// What came out, as JSON names it.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) program: String,
+    pub(crate) machine: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) method: Option<String>,
+    pub(crate) axes: Vec<char>,
+    pub(crate) cycle_time_s: f64,
+    pub(crate) setpoints: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) period_s: Option<f64>,
+    pub(crate) blocks: u64,
+    pub(crate) moves: u32,
+    pub(crate) path_length_mm: f64,
+    pub(crate) peak_speed_mm_s: f64,
+    pub(crate) peak_velocity: Vec<f64>,
+    pub(crate) peak_acceleration: Vec<f64>,
+    pub(crate) peak_jerk: Vec<f64>,
+    pub(crate) velocity_limit: Vec<f64>,
+    pub(crate) acceleration_limit: Vec<f64>,
+    pub(crate) jerk_limit: Vec<f64>,
+    pub(crate) max_deviation_mm: f64,
+    pub(crate) max_deviation_share: f64,
+    pub(crate) max_corner_error_mm: f64,
+    pub(crate) max_corner_error_share: f64,
+    pub(crate) feedrate_overshoot_mm_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) planning_time_s: Option<f64>,
+    pub(crate) violations: u64,
+    pub(crate) worst: Vec<String>,
+}
+
+impl Summary {
+    /// A summary of a report; what only a planner knows is added by whoever planned.
+    pub(crate) fn of<const N: usize>(
+        program: &str,
+        setup: &Setup,
+        report: &Report<N>,
+        blocks: u64,
+        set_points: u64,
+    ) -> Self {
+        let values = |peaks: &[Peak; N]| peaks.iter().map(|peak| peak.value).collect();
+        let limits = setup.limits::<N>();
+        Self {
+            program: program.to_owned(),
+            machine: setup.machine.clone(),
+            method: None,
+            axes: setup.letters(),
+            cycle_time_s: report.cycle_time,
+            setpoints: set_points,
+            period_s: None,
+            blocks,
+            moves: report.moves,
+            path_length_mm: report.path_length,
+            peak_speed_mm_s: report.peak_speed.value,
+            peak_velocity: values(&report.peak_velocity),
+            peak_acceleration: values(&report.peak_acceleration),
+            peak_jerk: values(&report.peak_jerk),
+            velocity_limit: limits.velocity().iter().copied().collect(),
+            acceleration_limit: limits.acceleration().iter().copied().collect(),
+            jerk_limit: limits.jerk().iter().copied().collect(),
+            max_deviation_mm: report.deviation.value,
+            max_deviation_share: report.deviation_ratio.value,
+            max_corner_error_mm: report.corner_error.value,
+            max_corner_error_share: report.corner_ratio.value,
+            feedrate_overshoot_mm_s: report.feedrate_overshoot.value,
+            planning_time_s: None,
+            violations: report.violations,
+            worst: worst_first(&report.examples),
+        }
+    }
+
+    /// The summary as one JSON object, with a line end.
+    pub(crate) fn json(&self) -> Result<String, serde_json::Error> {
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// The summary for a machinist.
+    pub(crate) fn text(&self) -> String {
+        let mut text = String::new();
+        let how = match &self.method {
+            Some(method) => format!("planned by {method} for {}", self.machine),
+            None => format!("set-points judged for {}", self.machine),
+        };
+        let period = self.period_s.map_or_else(String::new, |period| {
+            format!(" every {} ms", shortest(1e3 * period))
+        });
+        let average = if self.cycle_time_s > 0.0 {
+            self.path_length_mm / self.cycle_time_s
+        } else {
+            0.0
+        };
+        let _ = write!(
+            text,
+            "{program}: {how}\n\n\
+             cycle time   {clock}  ({cycle:.3} s; {rows} set-points{period})\n\
+             path         {length:.3} mm in {moves} moves from {blocks} blocks\n\
+             feedrate     {average:.1} mm/s on average, {fastest:.1} mm/s at most ({per_minute:.0} mm/min)\n\
+             deviation    {deviation:.5} mm from the path, {share:.1} % of the tolerance\n\
+             corners      passed within {corner:.5} mm, {corner_share:.1} % of the tolerance\n\n",
+            program = self.program,
+            clock = clock(self.cycle_time_s),
+            cycle = self.cycle_time_s,
+            rows = self.setpoints,
+            length = self.path_length_mm,
+            moves = self.moves,
+            blocks = self.blocks,
+            fastest = self.peak_speed_mm_s,
+            per_minute = 60.0 * self.peak_speed_mm_s,
+            deviation = self.max_deviation_mm,
+            share = 100.0 * self.max_deviation_share,
+            corner = self.max_corner_error_mm,
+            corner_share = 100.0 * self.max_corner_error_share,
+        );
+        self.axes_table(&mut text);
+        if let Some(time) = self.planning_time_s {
+            let _ = writeln!(text, "planned in   {time:.3} s");
+        }
+        let verdict = match self.violations {
+            0 => "verdict      every limit and tolerance is kept".to_owned(),
+            1 => "verdict      NOT ALLOWED: 1 violation".to_owned(),
+            more => format!("verdict      NOT ALLOWED: {more} violations"),
+        };
+        let _ = writeln!(text, "{verdict}");
+        text
+    }
+
+    fn axes_table(&self, text: &mut String) {
+        text.push_str("axis         velocity, mm/s      acceleration, mm/s²     jerk, mm/s³\n");
+        for (axis, letter) in self.axes.iter().enumerate() {
+            let cell = |peaks: &[f64], limits: &[f64]| {
+                let peak = peaks.get(axis).copied().unwrap_or(0.0);
+                let limit = limits.get(axis).copied().unwrap_or(f64::INFINITY);
+                format!("{peak:.1}  {:.1} %", 100.0 * peak / limit)
+            };
+            let _ = writeln!(
+                text,
+                "{letter:<12} {:<19} {:<23} {}",
+                cell(&self.peak_velocity, &self.velocity_limit),
+                cell(&self.peak_acceleration, &self.acceleration_limit),
+                cell(&self.peak_jerk, &self.jerk_limit),
+            );
+        }
+        text.push('\n');
+    }
+
+    /// What was broken, worst first, one line each; empty when nothing was.
+    pub(crate) fn complaint(&self) -> String {
+        let mut text = String::new();
+        if self.violations == 0 {
+            return text;
+        }
+        for violation in &self.worst {
+            let _ = writeln!(text, "{}: {violation}", self.program);
+        }
+        let quoted = self.worst.len() as u64;
+        if self.violations > quoted {
+            let _ = writeln!(
+                text,
+                "{}: and {} more",
+                self.program,
+                self.violations - quoted
+            );
+        }
+        text
+    }
+}
+
+/// Hours, minutes and seconds, as a clock on a machine shows them.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a cycle time is not negative and far below 2^64 s"
+)]
+pub(crate) fn clock(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
+}
+
+/// A number without the digits that its rounding brought, such as 1 for 1e3 times 0.001.
+fn shortest(value: f64) -> f64 {
+    let rounded = (value * 1e9).round() / 1e9;
+    if rounded > 0.0 { rounded } else { value }
+}
+
+fn worst_first(examples: &[Violation]) -> Vec<String> {
+    let mut sorted: Vec<_> = examples.iter().collect();
+    sorted.sort_by(|one, two| severity(two).total_cmp(&severity(one)));
+    sorted.iter().map(ToString::to_string).collect()
+}
+
+/// By how much a bound is exceeded; what has no bound is worse than anything that has one.
+fn severity(violation: &Violation) -> f64 {
+    match *violation {
+        Violation::Velocity { value, limit, .. }
+        | Violation::Acceleration { value, limit, .. }
+        | Violation::Jerk { value, limit, .. } => value / limit,
+        Violation::Feedrate {
+            value, feedrate, ..
+        } => value / feedrate,
+        Violation::Deviation {
+            value, tolerance, ..
+        }
+        | Violation::CornerMissed {
+            value, tolerance, ..
+        } => value / tolerance,
+        _ => f64::INFINITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_counts_hours_minutes_and_seconds() {
+        assert_eq!(clock(0.2), "0:00:00");
+        assert_eq!(clock(59.6), "0:01:00");
+        assert_eq!(clock(3.0 * 3600.0 + 125.0), "3:02:05");
+        assert_eq!(clock(360_000.0), "100:00:00");
+    }
+}
