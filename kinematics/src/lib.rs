@@ -6,6 +6,7 @@
 
 pub mod numeric;
 pub mod vector;
+pub mod verify;
 
 mod arc;
 mod corner;
@@ -34,3 +35,4 @@ pub use sample::{Sample, SamplePeriod};
 pub use tolerance::{Feedrate, Tolerance};
 pub use toolpath::{Move, Path, Toolpath, check_contact};
 pub use vector::Vector;
+pub use verify::{Judge, Peak, Place, Report, Violation, verify};

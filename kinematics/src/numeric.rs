@@ -38,3 +38,35 @@ pub const UNIT_LENGTH_ERROR: f64 = 1e-3;
 
 /// Share of a tolerance that remains however much of it was used, so that a tolerance stays positive.
 pub const LEAST_SHARE: f64 = 1e-3;
+
+/// Room granted to a length per mm of coordinate, dimensionless: the rounding of some sixteen
+/// operations on a coordinate.
+pub const COORDINATE_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Relative room granted to velocity and acceleration where two pieces meet, and to rest, as a
+/// share of the limit of the axis: both sides are sums of a few products below the limit, so their
+/// rounding stays far below.
+pub const JUMP_SLACK: f64 = 1e-9;
+
+/// Room granted to a duration, s: a nanosecond, far below any period and far above the rounding of
+/// the durations that are added.
+pub const TIME_SLACK: f64 = 1e-9;
+
+/// Relative precision to which the judge finds the largest deviation and the closest approach to
+/// a corner: a ten-thousandth of a micrometre for a tolerance of 0.1 mm.
+pub const JUDGE_PRECISION: f64 = 1e-6;
+
+/// Relative precision to which the judge finds the square of the largest speed: well inside
+/// [`LIMIT_SLACK`].
+pub const SPEED_PRECISION: f64 = 1e-12;
+
+/// How often the judge halves a piece of motion at most: a share of 1e-12 of any piece is shorter
+/// than a picometre.
+pub const JUDGE_HALVINGS: u32 = 40;
+
+/// How many parts of one piece the judge looks at before it takes the bound for the value: never
+/// reached by motion that follows its path, a fraction of a second for motion made to be awkward.
+pub const JUDGE_PARTS: u32 = 200_000;
+
+/// How many moves ahead the judge of set-points looks for a motion that has left its path.
+pub const LOOK_AHEAD_MOVES: u32 = 64;

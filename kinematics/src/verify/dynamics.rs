@@ -1,0 +1,289 @@
+//! Limits at every instant of a piece, and continuity between pieces.
+//!
+//! Source: velocity is a parabola whose extreme lies where the acceleration vanishes, acceleration
+//! is a straight line, jerk is constant; the square of the speed is a quartic. Not here: the path.
+
+use super::bernstein::{Largest, squared_speed};
+use super::leg::length_slack;
+use super::report::{Peak, Place, Report};
+use super::violation::Violation;
+use crate::limits::Limits;
+use crate::numeric::{JUMP_SLACK, LIMIT_SLACK};
+use crate::piece::Piece;
+use crate::sample::Sample;
+use crate::vector::{Vector, is_finite};
+
+/// A piece with its ends and its beginning on the clock.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch<const N: usize> {
+    pub(super) begin: f64,
+    pub(super) duration: f64,
+    pub(super) start: Sample<N>,
+    /// The state that the polynomial reaches.
+    pub(super) end: Sample<N>,
+    /// The position where the piece says that it ends.
+    pub(super) stated_end: Vector<N>,
+}
+
+impl<const N: usize> Stretch<N> {
+    pub(super) fn new(piece: &Piece<N>, begin: f64) -> Self {
+        let t = piece.duration();
+        let start = Sample {
+            position: piece.start(),
+            ..piece.at(0.0)
+        };
+        let Sample {
+            position,
+            velocity,
+            acceleration,
+            jerk,
+        } = start;
+        let end = Sample {
+            position: position + (velocity + (acceleration * 0.5 + jerk * (t / 6.0)) * t) * t,
+            velocity: velocity + (acceleration + jerk * (0.5 * t)) * t,
+            acceleration: acceleration + jerk * t,
+            jerk,
+        };
+        Self {
+            begin,
+            duration: t,
+            start,
+            end,
+            stated_end: piece.end(),
+        }
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        let fine = |at: &Sample<N>| {
+            is_finite(&at.position)
+                && is_finite(&at.velocity)
+                && is_finite(&at.acceleration)
+                && is_finite(&at.jerk)
+        };
+        // A negative duration runs back in time, which is no motion either.
+        self.duration >= 0.0
+            && self.begin.is_finite()
+            && fine(&self.start)
+            && fine(&self.end)
+            && is_finite(&self.stated_end)
+    }
+
+    /// Whether the whole piece stands still.
+    pub(super) fn rests(&self, limits: &Limits<N>) -> bool {
+        moving_axis(&self.start, limits).is_none() && moving_axis(&self.end, limits).is_none() && {
+            let room = length_slack(self.start.position.amax());
+            (self.end.position - self.start.position).amax() <= room
+        }
+    }
+}
+
+/// The first axis that is not at rest.
+pub(super) fn moving_axis<const N: usize>(at: &Sample<N>, limits: &Limits<N>) -> Option<usize> {
+    (0..N).find(|&axis| {
+        at.velocity[axis].abs() > JUMP_SLACK * limits.velocity()[axis]
+            || at.acceleration[axis].abs() > JUMP_SLACK * limits.acceleration()[axis]
+    })
+}
+
+/// Velocity, acceleration and jerk of every axis against its limits.
+pub(super) fn judge_limits<const N: usize>(
+    report: &mut Report<N>,
+    limits: &Limits<N>,
+    stretch: &Stretch<N>,
+    place: Place,
+) {
+    let Stretch {
+        begin,
+        duration,
+        start,
+        end,
+        ..
+    } = stretch;
+    for axis in 0..N {
+        let (a, j) = (start.acceleration[axis], start.jerk[axis]);
+        let mut velocity = larger(start.velocity[axis], end.velocity[axis], *begin, *duration);
+        let turn = -a / j;
+        if turn > 0.0 && turn < *duration {
+            let extreme = (start.velocity[axis] + 0.5 * a * turn).abs();
+            if extreme > velocity.0 {
+                velocity = (extreme, begin + turn);
+            }
+        }
+        let acceleration = larger(a, end.acceleration[axis], *begin, *duration);
+        note(report, Quantity::Velocity, axis, velocity, limits, place);
+        note(
+            report,
+            Quantity::Acceleration,
+            axis,
+            acceleration,
+            limits,
+            place,
+        );
+        // A piece without duration has a jerk in name only.
+        if *duration > 0.0 {
+            note(
+                report,
+                Quantity::Jerk,
+                axis,
+                (j.abs(), *begin),
+                limits,
+                place,
+            );
+        }
+    }
+}
+
+/// A quantity that is limited on every axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Quantity {
+    Velocity,
+    Acceleration,
+    Jerk,
+}
+
+/// Records a value with its time, and a violation when it breaks the limit.
+pub(super) fn note<const N: usize>(
+    report: &mut Report<N>,
+    quantity: Quantity,
+    axis: usize,
+    (value, time): (f64, f64),
+    limits: &Limits<N>,
+    place: Place,
+) {
+    let (peak, limit): (&mut Peak, f64) = match quantity {
+        Quantity::Velocity => (&mut report.peak_velocity[axis], limits.velocity()[axis]),
+        Quantity::Acceleration => (
+            &mut report.peak_acceleration[axis],
+            limits.acceleration()[axis],
+        ),
+        Quantity::Jerk => (&mut report.peak_jerk[axis], limits.jerk()[axis]),
+    };
+    peak.raise(value, time, place);
+    if value <= limit * (1.0 + LIMIT_SLACK) {
+        return;
+    }
+    report.add(match quantity {
+        Quantity::Velocity => Violation::Velocity {
+            axis,
+            value,
+            limit,
+            time,
+            place,
+        },
+        Quantity::Acceleration => Violation::Acceleration {
+            axis,
+            value,
+            limit,
+            time,
+            place,
+        },
+        Quantity::Jerk => Violation::Jerk {
+            axis,
+            value,
+            limit,
+            time,
+            place,
+        },
+    });
+}
+
+/// The speed against a feedrate; a feedrate of 0 bounds nothing.
+pub(super) fn judge_speed<const N: usize>(
+    report: &mut Report<N>,
+    stretch: &Stretch<N>,
+    feedrate: f64,
+    place: Place,
+) {
+    let squares = squared_speed(&stretch.start, stretch.duration);
+    let peak = report.peak_speed.value;
+    let bounded = feedrate > 0.0 && feedrate.is_finite();
+    let known = if bounded { peak.min(feedrate) } else { peak };
+    let search = Largest::above(known * known, &squares);
+    if search.bound <= known * known {
+        return;
+    }
+    let (speed, time) = (
+        search.bound.sqrt(),
+        stretch.begin + search.at * stretch.duration,
+    );
+    report.peak_speed.raise(speed, time, place);
+    if bounded {
+        note_feedrate(report, speed, feedrate, time, place);
+    }
+}
+
+/// Records how far a speed exceeds the feedrate.
+pub(super) fn note_feedrate<const N: usize>(
+    report: &mut Report<N>,
+    speed: f64,
+    feedrate: f64,
+    time: f64,
+    place: Place,
+) {
+    report
+        .feedrate_overshoot
+        .raise(speed - feedrate, time, place);
+    if speed > feedrate * (1.0 + LIMIT_SLACK) {
+        report.add(Violation::Feedrate {
+            value: speed,
+            feedrate,
+            time,
+            place,
+        });
+    }
+}
+
+/// Whether a piece continues the state before it, and ends where it says.
+pub(super) fn judge_continuity<const N: usize>(
+    report: &mut Report<N>,
+    limits: &Limits<N>,
+    before: &Sample<N>,
+    stretch: &Stretch<N>,
+    place: Place,
+) {
+    let start = &stretch.start;
+    let gap = (start.position - before.position).norm();
+    let miss = (stretch.end.position - stretch.stated_end).norm();
+    let reach = start.position.amax().max(stretch.stated_end.amax());
+    for (value, time) in [
+        (gap, stretch.begin),
+        (miss, stretch.begin + stretch.duration),
+    ] {
+        report.position_jump.raise(value, time, place);
+        if value > length_slack(reach) {
+            report.add(Violation::PositionJump { value, time, place });
+        }
+    }
+    let time = stretch.begin;
+    for axis in 0..N {
+        let value = (start.velocity[axis] - before.velocity[axis]).abs();
+        report.velocity_jump.raise(value, time, place);
+        if value > JUMP_SLACK * limits.velocity()[axis] {
+            report.add(Violation::VelocityJump {
+                axis,
+                value,
+                time,
+                place,
+            });
+        }
+        let value = (start.acceleration[axis] - before.acceleration[axis]).abs();
+        report.acceleration_jump.raise(value, time, place);
+        if value > JUMP_SLACK * limits.acceleration()[axis] {
+            report.add(Violation::AccelerationJump {
+                axis,
+                value,
+                time,
+                place,
+            });
+        }
+    }
+}
+
+/// The larger magnitude of two ends, with its time.
+fn larger(first: f64, last: f64, begin: f64, duration: f64) -> (f64, f64) {
+    if last.abs() > first.abs() {
+        (last.abs(), begin + duration)
+    } else {
+        (first.abs(), begin)
+    }
+}

@@ -1,0 +1,187 @@
+//! A move of the path as the judge sees it: geometry, bounds, and what the motion has done there.
+//!
+//! Source: the meaning of [`crate::Tolerance`]. Not here: motion.
+
+use super::bernstein::Cubic;
+use super::helix::Helix;
+use super::report::Place;
+use crate::numeric::{COORDINATE_ROUNDING, LENGTH_SLACK, LIMIT_SLACK, SHORTEST_LENGTH, TIME_SLACK};
+use crate::toolpath::{Move, Path};
+use crate::vector::Vector;
+
+/// The points of a move.
+#[derive(Clone, Debug)]
+enum Shape<const N: usize> {
+    Line {
+        span: Vector<N>,
+        /// One over the squared length; zero for a line that is a point.
+        share: f64,
+    },
+    Arc(Box<Helix<N>>),
+}
+
+/// One move, with its bounds and the record of the motion along it.
+#[derive(Clone, Debug)]
+pub(super) struct Leg<const N: usize> {
+    shape: Shape<N>,
+    pub(super) start: Vector<N>,
+    pub(super) end: Vector<N>,
+    pub(super) length: f64,
+    pub(super) tolerance: f64,
+    /// The tolerance with room for rounding.
+    pub(super) allowed: f64,
+    /// Tolerance of the corner at the end: the smaller of this move's and the next.
+    pub(super) corner_tolerance: f64,
+    pub(super) corner_allowed: f64,
+    /// Room for rounding of a length here.
+    pub(super) slack: f64,
+    /// Largest speed; zero where the move is a dwell and bounds none.
+    pub(super) feedrate: f64,
+    pub(super) place: Place,
+    pub(super) stops: bool,
+    /// How long to rest, for a dwell.
+    pub(super) dwell: Option<f64>,
+    /// Closest approach so far to the corner at the end, when, and how long the motion rested.
+    pub(super) approach: f64,
+    pub(super) approach_time: f64,
+    pub(super) stopped: bool,
+    pub(super) rested: f64,
+    /// How many points inside an arc were passed, and the time of the last.
+    pub(super) waypoints_passed: u32,
+}
+
+impl<const N: usize> Leg<N> {
+    pub(super) fn new(next: &Move<N>, start: Vector<N>, mv: u32) -> Self {
+        let end = next.end(start);
+        let mut reach = start.amax().max(end.amax());
+        let (shape, dwell) = match next.path() {
+            Path::Arc(arc) => {
+                let (start_radius, end_radius) = arc.radii();
+                reach = reach.max(arc.center().amax() + start_radius.max(end_radius));
+                (Shape::Arc(Box::new(Helix::new(arc))), None)
+            }
+            Path::Line { .. } => (line(start, end), None),
+            Path::Dwell { duration } => (line(start, end), Some(*duration)),
+        };
+        let slack = length_slack(reach);
+        let tolerance = next.tolerance().length();
+        let allowed = tolerance * (1.0 + LIMIT_SLACK) + slack;
+        Self {
+            shape,
+            start,
+            end,
+            length: next.length(start),
+            tolerance,
+            allowed,
+            corner_tolerance: tolerance,
+            corner_allowed: allowed,
+            slack,
+            feedrate: if dwell.is_some() {
+                0.0
+            } else {
+                next.feedrate().speed()
+            },
+            place: Place {
+                mv,
+                line: next.line(),
+            },
+            stops: next.stops(),
+            dwell,
+            approach: f64::INFINITY,
+            approach_time: 0.0,
+            stopped: false,
+            rested: 0.0,
+            waypoints_passed: 0,
+        }
+    }
+
+    /// Says which move follows, whose tolerance the corner between them must respect too.
+    pub(super) fn meets(&mut self, next: &Self) {
+        self.corner_tolerance = self.tolerance.min(next.tolerance);
+        self.corner_allowed = self.allowed.min(next.allowed);
+    }
+
+    /// Whether there is nothing to do on this move, so that a motion may leave it out.
+    pub(super) fn is_empty(&self) -> bool {
+        self.length <= SHORTEST_LENGTH && !self.dwell.is_some_and(|time| time > TIME_SLACK)
+    }
+
+    /// Distance of a point from the move.
+    pub(super) fn distance(&self, point: &Vector<N>) -> f64 {
+        match &self.shape {
+            Shape::Line { span, share } => {
+                let offset = point - self.start;
+                let along = (offset.dot(span) * share).clamp(0.0, 1.0);
+                if along >= 1.0 {
+                    (point - self.end).norm()
+                } else {
+                    (offset - span * along).norm()
+                }
+            }
+            Shape::Arc(helix) => helix.nearest(point).1,
+        }
+    }
+
+    /// Bernstein coefficients of a cubic that is nowhere below the distance of the curve.
+    ///
+    /// The distance from a line is convex, so that its values at the control points do.
+    pub(super) fn majorant(&self, curve: &Cubic<N>) -> [f64; 4] {
+        match &self.shape {
+            Shape::Line { .. } => [
+                self.distance(&curve.points[0]),
+                self.distance(&curve.points[1]),
+                self.distance(&curve.points[2]),
+                self.distance(&curve.points[3]),
+            ],
+            Shape::Arc(helix) => helix.majorant(curve),
+        }
+    }
+
+    /// How many points inside the move the motion must pass in turn: those which cut an arc in
+    /// parts of less than half a turn, so that no turn can be left out.
+    pub(super) fn waypoints(&self) -> u32 {
+        match &self.shape {
+            Shape::Line { .. } => 0,
+            Shape::Arc(helix) => helix.waypoints(),
+        }
+    }
+
+    /// The waypoint of a number, counted from 0, and its share of the turn.
+    pub(super) fn waypoint(&self, index: u32) -> (Vector<N>, f64) {
+        match &self.shape {
+            Shape::Line { .. } => (self.end, 1.0),
+            Shape::Arc(helix) => {
+                let share = (f64::from(index) + 1.0) / (f64::from(helix.waypoints()) + 1.0);
+                (helix.point(share), share)
+            }
+        }
+    }
+
+    /// Takes note that the motion is at a distance from the corner at the end.
+    pub(super) fn comes_near(&mut self, distance: f64, time: f64) {
+        if distance < self.approach {
+            self.approach = distance;
+            self.approach_time = time;
+        }
+    }
+
+    /// Whether a dwell has lasted.
+    pub(super) fn has_dwelt(&self) -> bool {
+        self.dwell
+            .is_none_or(|duration| self.rested >= duration * (1.0 - LIMIT_SLACK) - TIME_SLACK)
+    }
+}
+
+/// Room for the rounding of a length among coordinates of this size.
+pub(super) fn length_slack(coordinate: f64) -> f64 {
+    LENGTH_SLACK + COORDINATE_ROUNDING * coordinate
+}
+
+fn line<const N: usize>(start: Vector<N>, end: Vector<N>) -> Shape<N> {
+    let span = end - start;
+    let square = span.norm_squared();
+    Shape::Line {
+        span,
+        share: if square > 0.0 { square.recip() } else { 0.0 },
+    }
+}

@@ -1,0 +1,6 @@
+//! Hand-made motions, each with one known defect or none.
+
+mod build;
+mod defects;
+mod order;
+mod search;

@@ -1,0 +1,112 @@
+//! Searches against dense sampling.
+
+use proptest::prelude::*;
+
+use crate::verify::approach::closest;
+use crate::verify::bernstein::{Cubic, Largest, squared_speed};
+use crate::verify::deviation;
+use crate::verify::route::Route;
+use crate::{Arc, Feedrate, Move, Sample, Tolerance, Vector};
+
+fn point() -> impl Strategy<Value = Vector<3>> {
+    [-3.0..3.0_f64, -3.0..3.0, -3.0..3.0].prop_map(Vector::from)
+}
+
+fn curve() -> impl Strategy<Value = Cubic<3>> {
+    [point(), point(), point(), point()].prop_map(|points| Cubic { points })
+}
+
+const STEPS: u32 = 2_000;
+
+fn shares() -> impl Iterator<Item = f64> {
+    (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn the_deviation_from_lines_and_an_arc_is_the_largest_sampled(
+        curve in curve(),
+        points in proptest::collection::vec((point(), 0.01..1.0_f64), 1..5),
+        arc in proptest::option::of((0.3..3.0_f64, -6.0..6.0_f64, -2.0..2.0_f64, 0.0..0.002_f64)),
+    ) {
+        let mut route = Route::new(Vector::<3>::zeros());
+        for (end, tolerance) in &points {
+            let tolerance = Tolerance::new(*tolerance).unwrap();
+            route.expect(&Move::line_to(*end, Feedrate::RAPID, tolerance).unwrap()).unwrap();
+        }
+        if let Some((radius, sweep, lift, growth)) = arc {
+            let start = route.end();
+            let center = start - Vector::<3>::new(radius, 0.0, 0.0);
+            let end = center
+                + Vector::<3>::new(sweep.cos(), sweep.sin(), 0.0) * (radius + growth)
+                + Vector::<3>::new(0.0, 0.0, lift);
+            let arc = Arc::about(start, end, center, [0, 1], sweep > 0.0, 0).unwrap();
+            route.expect(&Move::arc(arc, Feedrate::RAPID, Tolerance::new(0.1).unwrap())).unwrap();
+        }
+        let last = route.len() - 1;
+        let found = deviation::largest(&route, &curve, 0, last, [0.0; 2]);
+        let mut sampled = [0.0_f64; 2];
+        for u in shares() {
+            let at = curve.at(u);
+            let mut nearest = [f64::INFINITY; 2];
+            for leg in route.range(0, last) {
+                nearest[0] = nearest[0].min(leg.distance(&at));
+                nearest[1] = nearest[1].min(leg.distance(&at) / leg.allowed);
+            }
+            sampled = [sampled[0].max(nearest[0]), sampled[1].max(nearest[1])];
+        }
+        for k in 0..2 {
+            let bound = found.bounds[k];
+            prop_assert!(bound >= sampled[k] * (1.0 - 1e-12), "{bound} {}", sampled[k]);
+            prop_assert!(bound <= found.attained[k].value * (1.0 + 2e-6) + 1e-6, "{found:?}");
+            // Neighbouring samples are at most 24/2000 apart along the curve.
+            let step = 0.02 * if k == 0 { 1.0 } else { 100.0 };
+            prop_assert!(bound <= sampled[k] + step, "{bound} {}", sampled[k]);
+        }
+    }
+
+    #[test]
+    fn the_distance_from_a_helix_is_the_smallest_sampled(
+        at in point(), radius in 0.3..3.0_f64, sweep in -15.0..15.0_f64, lift in -4.0..4.0_f64,
+    ) {
+        let start = Vector::<3>::new(radius, 0.0, 0.0);
+        let turns = (sweep.abs() / std::f64::consts::TAU).floor();
+        let end = Vector::<3>::new(radius * sweep.cos(), radius * sweep.sin(), lift);
+        let center = Vector::<3>::zeros();
+        let arc =
+            Arc::about(start, end, center, [0, 1], sweep > 0.0, turns as u32).unwrap();
+        let mut route = Route::new(start);
+        route.expect(&Move::arc(arc, Feedrate::RAPID, Tolerance::new(0.1).unwrap())).unwrap();
+        let found = route.get(0).unwrap().distance(&at);
+        let sampled = shares().map(|u| (arc.point(u) - at).norm()).fold(f64::INFINITY, f64::min);
+        prop_assert!(found <= sampled + 1e-12, "{found} {sampled}");
+        let apart = arc.length() / f64::from(STEPS);
+        prop_assert!(found >= sampled - apart, "{found} {sampled}");
+    }
+
+    #[test]
+    fn the_closest_approach_is_the_smallest_sampled(curve in curve(), to in point()) {
+        let found = closest(&curve, &to, f64::INFINITY, 0.0).unwrap();
+        let sampled = shares().map(|u| (curve.at(u) - to).norm()).fold(f64::INFINITY, f64::min);
+        prop_assert!(found.distance <= sampled * (1.0 + 2e-6) + 2e-9, "{found:?} {sampled}");
+        prop_assert!(((curve.at(found.at) - to).norm() - found.distance).abs() < 1e-12, "{found:?}");
+        prop_assert!(closest(&curve, &to, 0.5 * found.distance, 0.0).is_none(), "no closer");
+    }
+
+    #[test]
+    fn the_largest_speed_is_the_largest_sampled(
+        velocity in point(), acceleration in point(), jerk in point(), time in 0.0..3.0_f64,
+    ) {
+        let start = Sample { position: Vector::zeros(), velocity, acceleration, jerk };
+        let found = Largest::above(0.0, &squared_speed(&start, time)).bound.sqrt();
+        let speed = |u: f64| {
+            let t = u * time;
+            (velocity + (acceleration + jerk * (0.5 * t)) * t).norm()
+        };
+        let sampled = shares().map(speed).fold(0.0, f64::max);
+        prop_assert!(found >= sampled * (1.0 - 1e-12), "{found} {sampled}");
+        prop_assert!(found <= sampled * (1.0 + 1e-3) + 1e-12, "{found} {sampled}");
+    }
+}
