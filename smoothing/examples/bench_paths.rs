@@ -12,8 +12,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for line in text.lines().filter(|line| line.starts_with("G1")) {
         let mut next = points[points.len() - 1];
         for word in line.split_whitespace() {
-            if let Some(value) = word.strip_prefix('X') { next[0] = value.parse()?; }
-            if let Some(value) = word.strip_prefix('Y') { next[1] = value.parse()?; }
+            if let Some(value) = word.strip_prefix('X') {
+                next[0] = value.parse()?;
+            }
+            if let Some(value) = word.strip_prefix('Y') {
+                next[1] = value.parse()?;
+            }
         }
         points.push(next);
     }
@@ -25,7 +29,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let elapsed = started.elapsed().as_secs_f64();
         println!(
             "{:18} {:.5} s  {} pieces  {:.2} us/block",
-            method.name(), motion.duration(), motion.pieces().len(),
+            method.name(),
+            motion.duration(),
+            motion.pieces().len(),
             1e6 * elapsed / points.len() as f64
         );
     }

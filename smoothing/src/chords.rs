@@ -4,7 +4,6 @@
 //! off by at most an eighth of the square of the angle times the radius, which bounds a helix and
 //! slightly unequal radii alike. Not here: arcs that stay arcs, which chapter 4 filters.
 
-use crate::merge::MERGE_SHARE;
 use std::f64::consts::FRAC_PI_2;
 use toolglide_kinematics::{Arc, Vector};
 
@@ -18,15 +17,13 @@ pub(crate) struct Chords<const N: usize> {
 }
 
 impl<const N: usize> Chords<N> {
-    /// Chords that leave the corners their share of `tolerance`.
-    pub(crate) fn new(arc: Arc<N>, tolerance: f64) -> Self {
+    /// Chords that lie off the arc by `deviation` at the most.
+    pub(crate) fn new(arc: Arc<N>, deviation: f64) -> Self {
         let (start_radius, end_radius) = arc.radii();
         let sweep = arc.sweep().abs();
         let growth = (end_radius - start_radius).abs() / sweep;
         let curvature = start_radius.max(end_radius) + 2.0 * growth;
-        let angle = (8.0 * MERGE_SHARE * tolerance / curvature)
-            .sqrt()
-            .min(FRAC_PI_2);
+        let angle = (8.0 * deviation / curvature).sqrt().min(FRAC_PI_2);
         let count = (sweep / angle).ceil().max(1.0);
         let angle = sweep / count;
         Self {

@@ -41,19 +41,28 @@ impl Lattice {
     /// A lattice that holds `size` corners at the most and begins at rest.
     pub(crate) fn new(size: usize) -> Self {
         let size = size.max(1);
-        let mut columns = VecDeque::with_capacity(size + 2);
-        let mut first = Column::empty();
-        first.offer(TurnShape::STOP);
-        first.costs[0] = 0.0;
-        columns.push_back(first);
-        Self {
-            columns,
+        let mut lattice = Self {
+            columns: VecDeque::with_capacity(size + 2),
             chosen: VecDeque::with_capacity(size + 2),
             way: Vec::with_capacity(size + 2),
             size,
-            wait: PATIENCE.min(size),
+            wait: 0,
             finished: false,
-        }
+        };
+        lattice.restart();
+        lattice
+    }
+
+    /// Begins again at rest.
+    pub(crate) fn restart(&mut self) {
+        self.columns.clear();
+        let mut first = Column::empty();
+        first.offer(TurnShape::STOP);
+        first.costs[0] = 0.0;
+        self.columns.push_back(first);
+        self.chosen.clear();
+        self.wait = PATIENCE.min(self.size);
+        self.finished = false;
     }
 
     /// Takes a move and the candidates of the corner at its end.

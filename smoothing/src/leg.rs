@@ -13,13 +13,24 @@ pub(crate) struct Leg<const N: usize> {
     pub(crate) length: f64,
     /// Limits along the leg; the velocity is the feedrate where that is lower.
     pub(crate) limits: Tangential,
-    /// What merging has left of the tolerance.
+    /// Largest speed of the moves that it serves.
+    pub(crate) feedrate: f64,
+    /// How far the motion may be from the moves that it serves.
     pub(crate) tolerance: Tolerance,
+    /// How far those moves may lie from the leg.
+    pub(crate) deviation: f64,
     pub(crate) serves: Serves,
     /// Whether the motion rests at its end.
     pub(crate) stop: bool,
     /// A pause at its end.
     pub(crate) dwell: Option<Dwell<N>>,
+}
+
+impl<const N: usize> Leg<N> {
+    /// What merging has left of the tolerance.
+    pub(crate) fn room(&self) -> Tolerance {
+        self.tolerance.less(self.deviation)
+    }
 }
 
 /// A pause at a point.

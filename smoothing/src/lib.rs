@@ -6,6 +6,7 @@
 //! not know filters, machines or programs.
 
 mod chords;
+mod corners;
 mod interrupted;
 mod lattice;
 mod leg;
@@ -14,6 +15,8 @@ mod method;
 mod pieces;
 mod planner;
 mod select;
+mod stretch;
+mod superposed;
 mod turn;
 mod uninterrupted;
 mod window;

@@ -14,7 +14,7 @@ use toolglide_kinematics::{Limits, Serves, Tolerance, Vector};
 pub(crate) const MERGE_SHARE: f64 = 0.6;
 
 /// Most moves merged into one: bounds memory and the work a move.
-const MOST_MERGED: usize = 64;
+const MOST_MERGED: usize = 160;
 
 /// The end of a straight stretch of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,7 @@ pub(crate) struct Vertex<const N: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct Merger<const N: usize> {
     limits: Limits<N>,
+    share: f64,
     anchor: Vector<N>,
     run: Vec<Vertex<N>>,
     /// Largest distance of the run from its line.
@@ -49,14 +50,24 @@ struct Carried<const N: usize> {
 }
 
 impl<const N: usize> Merger<N> {
-    pub(crate) fn new(start: Vector<N>, limits: Limits<N>) -> Self {
+    /// A merger that may use a share of the tolerance.
+    pub(crate) fn new(start: Vector<N>, limits: Limits<N>, share: f64) -> Self {
         Self {
             limits,
+            share,
             anchor: start,
             run: Vec::with_capacity(MOST_MERGED + 1),
             deviation: 0.0,
             carried: None,
         }
+    }
+
+    /// Begins again at rest at `start`.
+    pub(crate) fn restart(&mut self, start: Vector<N>) {
+        self.anchor = start;
+        self.run.clear();
+        self.deviation = 0.0;
+        self.carried = None;
     }
 
     /// Takes the next vertex; gives the leg that it completes.
@@ -115,7 +126,9 @@ impl<const N: usize> Merger<N> {
             direction,
             length,
             limits,
-            tolerance: tolerance.less(deviation),
+            feedrate,
+            tolerance,
+            deviation,
             serves,
             stop: false,
             dwell: None,
@@ -163,7 +176,7 @@ impl<const N: usize> Merger<N> {
         let tolerance = self.run.iter().fold(vertex.tolerance, |least, member| {
             least.min(member.tolerance)
         });
-        let budget = MERGE_SHARE * tolerance.length();
+        let budget = self.share * tolerance.length();
         if before.feedrate.to_bits() != vertex.feedrate.to_bits() {
             let shorter = (vertex.point - before.point)
                 .norm()

@@ -5,7 +5,7 @@
 
 use crate::leg::Leg;
 use crate::turn::{Turn, TurnShape};
-use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance, Vector};
+use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance};
 use toolglide_profiles::{Connection, Feed, State};
 
 /// Most pieces of a leg, its corner and a pause.
@@ -101,9 +101,4 @@ pub(crate) fn unroll_corner<const N: usize>(
         last: next.serves.last,
     };
     Turn::new(*shape, corner).pieces(serves, take);
-}
-
-/// Where the motion stands when it rests at the end of a leg.
-pub(crate) fn rest_at<const N: usize>(leg: &Leg<N>) -> Vector<N> {
-    leg.end
 }

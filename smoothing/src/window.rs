@@ -56,22 +56,31 @@ impl Window {
     /// speed; without it, one large corner may leave no room to the next.
     pub(crate) fn new(size: usize, balanced: bool) -> Self {
         let size = size.max(1);
-        let mut nodes = VecDeque::with_capacity(size + 3);
-        nodes.push_back(Node {
-            shape: TurnShape::STOP,
-            cap: 0.0,
-            upper: 0.0,
-            witness: 0.0,
-        });
-        Self {
-            nodes,
+        let mut window = Self {
+            nodes: VecDeque::with_capacity(size + 3),
             links: VecDeque::with_capacity(size + 3),
             size,
             batch: (size / 8).clamp(1, 16),
             passed: 0,
             finished: false,
             balanced,
-        }
+        };
+        window.restart();
+        window
+    }
+
+    /// Begins again at rest.
+    pub(crate) fn restart(&mut self) {
+        self.nodes.clear();
+        self.nodes.push_back(Node {
+            shape: TurnShape::STOP,
+            cap: 0.0,
+            upper: 0.0,
+            witness: 0.0,
+        });
+        self.links.clear();
+        self.passed = 0;
+        self.finished = false;
     }
 
     /// Takes the first move.

@@ -1,0 +1,231 @@
+//! Straight vertices in, motion out: a path planned corner by corner.
+//!
+//! Source: chapter 3. Vertices merge into legs, legs meet in corners, windows scale a motion for each
+//! corner, the lattice chooses among them, and the chosen ones are unrolled into pieces when they are
+//! asked for. Not here: any formula.
+
+use crate::lattice::{Lattice, MOST_CANDIDATES};
+use crate::leg::{Dwell, Leg};
+use crate::merge::{MERGE_SHARE, Merger, Vertex};
+use crate::method::{Method, Settings};
+use crate::pieces::{MOST_PIECES, corner_between, unroll_corner, unroll_leg};
+use crate::select::Selection;
+use crate::turn::TurnShape;
+use crate::window::{Link, Window};
+use std::collections::VecDeque;
+use toolglide_kinematics::{Piece, Tolerance, Vector};
+
+/// Plans the corners of a stream of vertices, from rest to rest.
+#[derive(Clone, Debug)]
+pub(crate) struct Corners<const N: usize> {
+    merger: Merger<N>,
+    /// The last leg, whose end is still open.
+    pending: Option<Leg<N>>,
+    selections: Vec<Selection<N>>,
+    windows: Vec<Window>,
+    scaled: Vec<VecDeque<TurnShape>>,
+    stops_allowed: bool,
+    lattice: Lattice,
+    /// Legs that have not been unrolled; the first `offered` of them are in the lattice.
+    legs: VecDeque<Leg<N>>,
+    offered: usize,
+    /// How the next leg to be unrolled begins.
+    from: TurnShape,
+    pieces: VecDeque<Piece<N>>,
+}
+
+impl<const N: usize> Corners<N> {
+    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+        let size = settings.window.max(1);
+        let selections = Selection::of(settings);
+        let windows: Vec<_> = selections
+            .iter()
+            .map(|selection| Window::new(size, selection.is_balanced()))
+            .collect();
+        Self {
+            merger: Merger::new(start, settings.limits, MERGE_SHARE),
+            pending: None,
+            scaled: windows
+                .iter()
+                .map(|_| VecDeque::with_capacity(2 * size + 4))
+                .collect(),
+            windows,
+            selections,
+            stops_allowed: matches!(settings.method, Method::Kcs | Method::ExactStop),
+            lattice: Lattice::new(size),
+            legs: VecDeque::with_capacity(3 * size + 8),
+            offered: 0,
+            from: TurnShape::STOP,
+            pieces: VecDeque::with_capacity(MOST_PIECES + 1),
+        }
+    }
+
+    /// Begins again at rest at `start`; everything must have been closed and pulled.
+    pub(crate) fn restart(&mut self, start: Vector<N>) {
+        self.merger.restart(start);
+        self.pending = None;
+        for (window, scaled) in self.windows.iter_mut().zip(&mut self.scaled) {
+            window.restart();
+            scaled.clear();
+        }
+        self.lattice.restart();
+        self.legs.clear();
+        self.offered = 0;
+        self.from = TurnShape::STOP;
+        self.pieces.clear();
+    }
+
+    /// Takes the next vertex.
+    pub(crate) fn push(&mut self, vertex: Vertex<N>) {
+        if let Some(leg) = self.merger.push(vertex) {
+            self.take_leg(leg);
+        }
+    }
+
+    /// The motion must rest where the path has come to.
+    pub(crate) fn rest(&mut self) {
+        if let Some(leg) = self.merger.flush() {
+            self.take_leg(leg);
+        }
+        if let Some(last) = &mut self.pending {
+            last.stop = true;
+        }
+    }
+
+    /// The motion must pause where the path has come to.
+    pub(crate) fn dwell(&mut self, pause: Dwell<N>) {
+        self.rest();
+        let pause = match self.merger.take_carried() {
+            Some(carried) => carried.then(pause),
+            None => pause,
+        };
+        self.pause(pause);
+    }
+
+    fn pause(&mut self, pause: Dwell<N>) {
+        match &mut self.pending {
+            Some(last) => {
+                last.dwell = Some(match last.dwell {
+                    Some(before) => before.then(pause),
+                    None => pause,
+                });
+            }
+            None => self.pieces.push_back(pause.piece(self.merger.anchor())),
+        }
+    }
+
+    /// Brings the motion to rest at the end of the last leg.
+    pub(crate) fn close(&mut self) {
+        self.rest();
+        if let Some(carried) = self.merger.take_carried() {
+            self.pause(carried);
+        }
+        for window in &mut self.windows {
+            window.finish();
+        }
+        self.offer();
+        if let Some(last) = self.pending.take() {
+            let link = link_of(&last);
+            self.legs.push_back(last);
+            self.lattice.push(&link, &[TurnShape::STOP]);
+            self.offered += 1;
+            self.lattice.finish();
+        }
+    }
+
+    /// The next piece of finished motion.
+    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
+        loop {
+            if let Some(piece) = self.pieces.pop_front() {
+                return Some(piece);
+            }
+            let shape = self.lattice.pull()?;
+            self.unroll(&shape);
+        }
+    }
+
+    /// Takes a leg, which completes the corner at its start.
+    fn take_leg(&mut self, leg: Leg<N>) {
+        let link = link_of(&leg);
+        match self.pending.replace(leg) {
+            None => {
+                for window in &mut self.windows {
+                    window.begin(link);
+                }
+            }
+            Some(last) => {
+                let corner = corner_between(&last, &leg, corner_tolerance(&last, &leg));
+                for (selection, window) in self.selections.iter().zip(&mut self.windows) {
+                    let shape = if last.stop {
+                        TurnShape::STOP
+                    } else {
+                        selection.shape(&corner, last.length, leg.length)
+                    };
+                    window.push(shape, link);
+                }
+                self.legs.push_back(last);
+                self.offer();
+            }
+        }
+    }
+
+    /// Hands corners to the lattice that all windows have scaled.
+    fn offer(&mut self) {
+        for (window, scaled) in self.windows.iter_mut().zip(&mut self.scaled) {
+            while let Some(shape) = window.pull() {
+                scaled.push_back(shape);
+            }
+        }
+        while self.offered < self.legs.len() && self.scaled.iter().all(|queue| !queue.is_empty()) {
+            let mut candidates = [TurnShape::STOP; MOST_CANDIDATES];
+            let mut count = 0;
+            let leg = &self.legs[self.offered];
+            for queue in &mut self.scaled {
+                if let Some(shape) = queue.pop_front() {
+                    candidates[count] = shape;
+                    count += 1;
+                }
+            }
+            if leg.stop {
+                count = 0;
+            }
+            if self.stops_allowed || leg.stop {
+                candidates[count] = TurnShape::STOP;
+                count += 1;
+            }
+            let link = link_of(leg);
+            self.lattice.push(&link, &candidates[..count]);
+            self.offered += 1;
+        }
+    }
+
+    /// Unrolls the next leg and the corner at its end.
+    fn unroll(&mut self, to: &TurnShape) {
+        let Some(leg) = self.legs.pop_front() else {
+            return;
+        };
+        self.offered -= 1;
+        let pieces = &mut self.pieces;
+        unroll_leg(&leg, &self.from, to, |piece| pieces.push_back(piece));
+        if let Some(pause) = leg.dwell {
+            pieces.push_back(pause.piece(leg.end));
+        }
+        if let Some(next) = self.legs.front().or(self.pending.as_ref()) {
+            let corner = corner_between(&leg, next, corner_tolerance(&leg, next));
+            unroll_corner(to, corner, &leg, next, |piece| pieces.push_back(piece));
+        }
+        self.from = *to;
+    }
+}
+
+fn link_of<const N: usize>(leg: &Leg<N>) -> Link {
+    Link {
+        length: leg.length,
+        limits: leg.limits,
+    }
+}
+
+/// The tolerance of the corner between two legs: what merging has left of both.
+fn corner_tolerance<const N: usize>(leg: &Leg<N>, next: &Leg<N>) -> Tolerance {
+    leg.room().min(next.room())
+}

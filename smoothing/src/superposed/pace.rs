@@ -1,0 +1,307 @@
+//! How fast a stretch may be travelled, and the jerk-limited progress along it.
+//!
+//! Source: ours. At constant speed the filtered motion through a place of the curve has the second
+//! and third differences of the points around it for acceleration and jerk, so the speed that a place
+//! allows is found by trying; the rest of the limits is left to changes of speed, which the look-ahead
+//! window plans as if the stretch were straight. What comes out is a proposal, judged elsewhere.
+
+use super::curve::Curve;
+use crate::turn::TurnShape;
+use crate::window::{Link, Window};
+use toolglide_kinematics::{Limits, Tangential, Vector, largest_multiple};
+use toolglide_profiles::{Connection, Feed, Profile};
+
+/// Share of the acceleration that curvature may use.
+const CURVATURE_ACCELERATION: f64 = 0.85;
+/// Share of the jerk that changes of curvature may use.
+const CURVATURE_JERK: f64 = 0.7;
+/// Share of the tolerance that curvature may use.
+const CURVATURE_TOLERANCE: f64 = 0.8;
+/// Ratio of the speeds that are tried at a place.
+const LADDER: f64 = 0.95;
+/// Lowest speed tried, as a share of the feedrate.
+const LOWEST: f64 = 0.01;
+/// Places whose speeds lie within this ratio share a link.
+const ALIKE: f64 = 0.9;
+/// Most places on one stretch.
+pub(super) const MOST_PLACES: usize = 16_384;
+
+/// How densely and how sharply a stretch is filtered.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Filter {
+    /// Time between two knots.
+    pub(super) step: f64,
+    /// Share of the second difference by which control points are moved outward, times six.
+    pub(super) sharpening: f64,
+}
+
+/// A part of the stretch with the speed and the changes of speed that it allows.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    end: f64,
+    limits: Tangential,
+}
+
+/// Speeds along a stretch.
+#[derive(Clone, Debug)]
+pub(super) struct Pace {
+    places: Vec<Place>,
+    window: Window,
+    links: Vec<Link>,
+    turns: Vec<TurnShape>,
+}
+
+impl Pace {
+    pub(super) fn new() -> Self {
+        Self {
+            places: Vec::with_capacity(MOST_PLACES + 1),
+            window: Window::new(MOST_PLACES, false),
+            links: Vec::with_capacity(MOST_PLACES + 1),
+            turns: Vec::with_capacity(MOST_PLACES + 1),
+        }
+    }
+
+    /// Finds what each place of the curve allows; `false` when there are too many.
+    pub(super) fn survey<const N: usize>(
+        &mut self,
+        curve: &Curve<N>,
+        limits: &Limits<N>,
+        filter: &Filter,
+    ) -> bool {
+        self.places.clear();
+        let mut trial = Trial {
+            curve,
+            limits,
+            filter,
+            near: 0,
+        };
+        let mut last_speed = f64::INFINITY;
+        for (index, leg) in curve.legs().iter().enumerate() {
+            let feedrate = leg.limits.velocity;
+            let spacing = 0.5 * feedrate * filter.step;
+            let begin = curve.mark(index);
+            let pieces = (leg.length / spacing).ceil().max(1.0);
+            let width = leg.length / pieces;
+            let mut piece = 0.0;
+            while piece < pieces {
+                // The middle of a long leg is far from any curvature.
+                let straight = piece > 6.5 && pieces - piece > 8.5;
+                let end = if straight {
+                    let skipped = pieces - 8.0;
+                    let end = begin + skipped * width;
+                    piece = skipped;
+                    end
+                } else {
+                    piece += 1.0;
+                    begin + piece * width
+                };
+                let limits = if straight {
+                    last_speed = feedrate;
+                    leg.limits
+                } else {
+                    let start = self.places.last().map_or(0.0, |place: &Place| place.end);
+                    trial.near = index;
+                    let limits = trial.limits_at(0.5 * (start + end), feedrate, last_speed);
+                    last_speed = limits.velocity;
+                    limits
+                };
+                if self.places.len() >= MOST_PLACES {
+                    return false;
+                }
+                self.places.push(Place { end, limits });
+            }
+        }
+        true
+    }
+
+    /// Slows the places around a distance.
+    pub(super) fn slow(&mut self, from: f64, to: f64, factor: f64) {
+        let first = self.places.partition_point(|place| place.end < from);
+        for index in first..self.places.len() {
+            let start = if index > 0 {
+                self.places[index - 1].end
+            } else {
+                0.0
+            };
+            if start > to {
+                break;
+            }
+            let limits = &mut self.places[index].limits;
+            limits.velocity *= factor;
+            limits.acceleration *= factor * factor;
+            limits.jerk *= factor;
+        }
+    }
+
+    /// Plans the progress from rest to rest; gives the distance at each multiple of `step`, until the
+    /// end is reached. `false` when `take` has had enough.
+    pub(super) fn progress(&mut self, step: f64, mut take: impl FnMut(f64) -> bool) -> bool {
+        self.link();
+        let mut begin = 0.0;
+        let mut time = 0.0;
+        let mut tick = 0.0;
+        let mut from = 0.0;
+        for (index, link) in self.links.iter().enumerate() {
+            let to = self.turns.get(index).map_or(0.0, |turn| turn.speed);
+            let connection = Connection {
+                from: [from, 0.0],
+                to: [to, 0.0],
+                limits: link.limits,
+            };
+            let Ok(feed) = Feed::over(link.length, &connection) else {
+                return false;
+            };
+            let end = time + feed.duration();
+            while tick * step < end {
+                if !take(begin + feed.at(tick * step - time).position) {
+                    return false;
+                }
+                tick += 1.0;
+            }
+            begin += link.length;
+            time = end;
+            from = to;
+        }
+        true
+    }
+
+    /// Joins places that are alike and plans the speeds between them.
+    fn link(&mut self) {
+        self.links.clear();
+        self.turns.clear();
+        self.window.restart();
+        let mut start = 0.0;
+        let mut open: Option<(Tangential, Tangential)> = None; // least and largest of the group
+        let mut last_end = 0.0;
+        for place in &self.places {
+            let joined = open.map(|(least, most)| {
+                (
+                    Tangential {
+                        velocity: least.velocity.min(place.limits.velocity),
+                        acceleration: least.acceleration.min(place.limits.acceleration),
+                        jerk: least.jerk.min(place.limits.jerk),
+                    },
+                    Tangential {
+                        velocity: most.velocity.max(place.limits.velocity),
+                        acceleration: most.acceleration.max(place.limits.acceleration),
+                        jerk: most.jerk.max(place.limits.jerk),
+                    },
+                )
+            });
+            match joined {
+                Some((least, most)) if least.velocity >= ALIKE * most.velocity => {
+                    open = Some((least, most));
+                }
+                _ => {
+                    if let Some((least, _)) = open {
+                        self.links.push(Link {
+                            length: last_end - start,
+                            limits: least,
+                        });
+                        start = last_end;
+                    }
+                    open = Some((place.limits, place.limits));
+                }
+            }
+            last_end = place.end;
+        }
+        if let Some((least, _)) = open {
+            self.links.push(Link {
+                length: last_end - start,
+                limits: least,
+            });
+        }
+        for (index, link) in self.links.iter().enumerate() {
+            if index == 0 {
+                self.window.begin(*link);
+            } else {
+                let speed = link
+                    .limits
+                    .velocity
+                    .min(self.links[index - 1].limits.velocity);
+                let through = TurnShape {
+                    speed,
+                    ..TurnShape::STOP
+                };
+                self.window.push(through, *link);
+            }
+        }
+        self.window.finish();
+        while let Some(turn) = self.window.pull() {
+            self.turns.push(turn);
+        }
+    }
+}
+
+/// Tries speeds at places of a curve.
+struct Trial<'a, const N: usize> {
+    curve: &'a Curve<N>,
+    limits: &'a Limits<N>,
+    filter: &'a Filter,
+    near: usize,
+}
+
+impl<const N: usize> Trial<'_, N> {
+    /// The largest speed of the ladder that the place allows, and what it leaves to changes of speed.
+    fn limits_at(&self, distance: f64, feedrate: f64, guess: f64) -> Tangential {
+        let mut speed = (guess / (LADDER * LADDER)).min(feedrate);
+        loop {
+            let [second, third] = self.differences(distance, speed);
+            if self.fits(distance, &second, &third) || speed < LOWEST * feedrate {
+                return self.rest(distance, speed, &second, &third);
+            }
+            speed *= LADDER;
+        }
+    }
+
+    /// Second and third difference of the control points around a distance.
+    fn differences(&self, distance: f64, speed: f64) -> [Vector<N>; 2] {
+        let reach = speed * self.filter.step;
+        let at = |share: f64| {
+            let distance = distance + share * reach;
+            self.curve
+                .point(distance, self.curve.leg_at(distance, self.near))
+        };
+        let second = at(1.0) - at(0.0) * 2.0 + at(-1.0);
+        let third = at(1.5) - at(0.5) * 3.0 + at(-0.5) * 3.0 - at(-1.5);
+        let amplified = self.filter.sharpening;
+        [
+            second * (1.0 + amplified / 3.0),
+            third * (1.0 + 0.5 * amplified),
+        ]
+    }
+
+    fn fits(&self, distance: f64, second: &Vector<N>, third: &Vector<N>) -> bool {
+        let step = self.filter.step;
+        let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
+        let off = second.norm() * (1.0 - self.filter.sharpening).max(0.25) / 6.0;
+        largest_multiple(second, self.limits.acceleration()) * CURVATURE_ACCELERATION * step * step
+            >= 1.0
+            && largest_multiple(third, self.limits.jerk()) * CURVATURE_JERK * step.powi(3) >= 1.0
+            && off <= CURVATURE_TOLERANCE * leg.room().length()
+    }
+
+    /// What curvature leaves of the limits along the path.
+    fn rest(&self, distance: f64, speed: f64, second: &Vector<N>, third: &Vector<N>) -> Tangential {
+        let step = self.filter.step;
+        let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
+        let mut rest = Tangential {
+            velocity: speed,
+            ..leg.limits
+        };
+        let used = |difference: f64, bound: f64| (bound - difference.abs()).max(0.1 * bound);
+        for axis in 0..N {
+            let share = leg.direction[axis].abs();
+            if share > 0.0 {
+                let acceleration = used(
+                    second[axis] / (step * step),
+                    self.limits.acceleration()[axis],
+                );
+                let jerk = used(third[axis] / step.powi(3), self.limits.jerk()[axis]);
+                rest.acceleration = rest.acceleration.min(acceleration / share);
+                rest.jerk = rest.jerk.min(jerk / share);
+            }
+        }
+        rest
+    }
+}

@@ -1,0 +1,216 @@
+//! Control points in equal time steps, the motion between them, and an exact judgement of it.
+//!
+//! Source: ours. A cubic spline over equal steps has the second difference of its control points for
+//! acceleration at the knots and the third for jerk between them, so both are judged exactly; its
+//! Bezier points bound where it runs, so the tolerance is judged between the knots as well. Not here:
+//! where the control points come from.
+
+use super::curve::{Curve, distance_to};
+use toolglide_kinematics::numeric::LIMIT_SLACK;
+use toolglide_kinematics::{Limits, Piece, Sample, Vector};
+
+/// Parts into which a piece is cut where its Bezier points are compared with the path: at first, and
+/// where that is not sharp enough.
+const PARTS: [usize; 2] = [4, 16];
+
+/// A control point and its place on the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Control<const N: usize> {
+    pub(super) point: Vector<N>,
+    pub(super) distance: f64,
+    pub(super) leg: usize,
+}
+
+/// A cubic spline over equal time steps.
+#[derive(Clone, Debug)]
+pub(super) struct Spline<const N: usize> {
+    pub(super) controls: Vec<Control<N>>,
+    pub(super) step: f64,
+}
+
+impl<const N: usize> Spline<N> {
+    /// How many pieces it has.
+    pub(super) fn pieces(&self) -> usize {
+        self.controls.len().saturating_sub(3)
+    }
+
+    /// How long it lasts.
+    #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+    pub(super) fn duration(&self) -> f64 {
+        self.pieces() as f64 * self.step
+    }
+
+    /// A piece of the motion.
+    pub(super) fn piece(&self, index: usize, curve: &Curve<N>) -> Piece<N> {
+        let step = self.step;
+        let [a, b, c, d] = self.four(index);
+        let [a, b, c, d] = [&a.point, &b.point, &c.point, &d.point];
+        let start = Sample {
+            position: b + (a - b * 2.0 + c) / 6.0,
+            velocity: (c - a) / (2.0 * step),
+            acceleration: (c - b * 2.0 + a) / (step * step),
+            jerk: (d - c * 3.0 + b * 3.0 - a) / step.powi(3),
+        };
+        let end = c + (b - c * 2.0 + d) / 6.0;
+        let [first, .., last] = self.four(index);
+        Piece::new(&start, step, end, curve.serves(first.leg, last.leg))
+    }
+
+    fn four(&self, index: usize) -> [&Control<N>; 4] {
+        [0, 1, 2, 3].map(|offset| &self.controls[index + offset])
+    }
+
+    /// Whether a piece keeps all limits and the tolerance, at every instant of it.
+    pub(super) fn keeps(&self, index: usize, curve: &Curve<N>, limits: &Limits<N>) -> bool {
+        let step = self.step;
+        let [a, b, c, d] = self.four(index);
+        let feedrate = curve.legs()[a.leg..=d.leg]
+            .iter()
+            .fold(f64::INFINITY, |least, leg| least.min(leg.limits.velocity));
+        let [a, b, c, d] = [a.point, b.point, c.point, d.point];
+        let second = c - b * 2.0 + a;
+        let third = d - c * 3.0 + b * 3.0 - a;
+        let slack = 1.0 - LIMIT_SLACK;
+        for axis in 0..N {
+            let kept = second[axis].abs() <= slack * limits.acceleration()[axis] * step * step
+                && third[axis].abs() <= slack * limits.jerk()[axis] * step.powi(3);
+            if !kept {
+                return false;
+            }
+        }
+        let next_second = d - c * 2.0 + b;
+        for axis in 0..N {
+            if next_second[axis].abs() > slack * limits.acceleration()[axis] * step * step {
+                return false;
+            }
+        }
+        for hop in [b - a, c - b, d - c] {
+            if hop.norm() > slack * feedrate * step {
+                return false;
+            }
+        }
+        PARTS
+            .iter()
+            .any(|&parts| self.stays_near(index, curve, parts))
+    }
+
+    /// Whether the motion stays within the tolerance of the path, and the path of the motion, judged
+    /// on parts of a piece.
+    #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+    fn stays_near(&self, index: usize, curve: &Curve<N>, parts: usize) -> bool {
+        let [a, b, c, d] = self.four(index);
+        let room = curve.legs()[a.leg..=d.leg]
+            .iter()
+            .fold(f64::INFINITY, |least, leg| least.min(leg.room().length()));
+        let mut rest = [
+            (a.point + b.point * 4.0 + c.point) / 6.0,
+            (b.point * 2.0 + c.point) / 3.0,
+            (b.point + c.point * 2.0) / 3.0,
+            (b.point + c.point * 4.0 + d.point) / 6.0,
+        ];
+        // Motion and curve do not advance alike; the part of the curve is taken longer by that.
+        let lag = ((c.distance - 2.0 * b.distance + a.distance).abs())
+            .max((d.distance - 2.0 * c.distance + b.distance).abs())
+            / 6.0;
+        let advance = (c.distance - b.distance) / parts as f64;
+        let pad = lag + 0.5 * advance.abs() + 0.5 * room;
+        for part in 0..parts {
+            let (points, remaining) = split(&rest, 1.0 / (parts - part) as f64);
+            rest = remaining;
+            let begin = b.distance + advance * part as f64;
+            let span = Span::of(curve, begin - pad, begin + advance + pad, b.leg);
+            let off = points
+                .iter()
+                .fold(0.0_f64, |most, point| most.max(span.distance(point)));
+            if off + span.deviation > room {
+                return false;
+            }
+            // Each corner of the path beside this part must be near it.
+            let flat = distance_to(&points[1], &points[0], &points[3])
+                .max(distance_to(&points[2], &points[0], &points[3]));
+            let first = curve.leg_at(begin, b.leg);
+            let last = curve.leg_at(begin + advance, b.leg);
+            for leg in &curve.legs()[first..last] {
+                // Along the path the nearest point may lie beside the part: allow for the lag.
+                let near = distance_to(&leg.end, &points[0], &points[3]);
+                if near > lag && near - lag + flat > room {
+                    return false;
+                }
+                let across = self.nearest(index, &leg.end);
+                if across > room {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Least distance from a point to the motion around a piece, found on chords and so an upper
+    /// bound once their sagitta is added.
+    #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+    fn nearest(&self, index: usize, point: &Vector<N>) -> f64 {
+        let cuts = PARTS[1];
+        let mut least = f64::INFINITY;
+        for piece in index.saturating_sub(1)..(index + 2).min(self.pieces()) {
+            let [a, b, c, d] = self.four(piece).map(|control| control.point);
+            let second = (c - b * 2.0 + a).norm().max((d - c * 2.0 + b).norm());
+            let sagitta = second / (8.0 * (cuts * cuts) as f64);
+            let mut from = (a + b * 4.0 + c) / 6.0;
+            for cut in 1..=cuts {
+                let to = at(&[a, b, c, d], cut as f64 / cuts as f64);
+                least = least.min(distance_to(point, &from, &to) + sagitta);
+                from = to;
+            }
+        }
+        least
+    }
+}
+
+/// The spline between two knots, by the share of the step.
+fn at<const N: usize>(controls: &[Vector<N>; 4], share: f64) -> Vector<N> {
+    let [a, b, c, d] = controls;
+    let rest = 1.0 - share;
+    let (cube, square) = (share.powi(3), share * share);
+    (a * rest.powi(3)
+        + b * (3.0 * cube - 6.0 * square + 4.0)
+        + c * (-3.0 * cube + 3.0 * square + 3.0 * share + 1.0)
+        + d * cube)
+        / 6.0
+}
+
+/// Cuts a cubic at a share of it.
+fn split<const N: usize>(points: &[Vector<N>; 4], share: f64) -> ([Vector<N>; 4], [Vector<N>; 4]) {
+    let between = |a: &Vector<N>, b: &Vector<N>| a + (b - a) * share;
+    let [a, b, c, d] = points;
+    let (ab, bc, cd) = (between(a, b), between(b, c), between(c, d));
+    let (abc, bcd) = (between(&ab, &bc), between(&bc, &cd));
+    let middle = between(&abc, &bcd);
+    ([*a, ab, abc, middle], [middle, bcd, cd, *d])
+}
+
+/// A part of the curve as one line, and how far the curve lies from it.
+struct Span<const N: usize> {
+    from: Vector<N>,
+    to: Vector<N>,
+    deviation: f64,
+}
+
+impl<const N: usize> Span<N> {
+    fn of(curve: &Curve<N>, begin: f64, end: f64, near: usize) -> Self {
+        let (first, last) = (curve.leg_at(begin, near), curve.leg_at(end, near));
+        let from = curve.point(begin, first);
+        let to = curve.point(end, last);
+        let deviation = curve.legs()[first..last].iter().fold(0.0_f64, |most, leg| {
+            most.max(distance_to(&leg.end, &from, &to))
+        });
+        Self {
+            from,
+            to,
+            deviation,
+        }
+    }
+
+    fn distance(&self, point: &Vector<N>) -> f64 {
+        distance_to(point, &self.from, &self.to)
+    }
+}
