@@ -21,8 +21,12 @@ const CURVATURE_TOLERANCE: f64 = 0.8;
 const LADDER: f64 = 0.95;
 /// Lowest speed tried, as a share of the feedrate.
 const LOWEST: f64 = 0.01;
-/// Places whose speeds lie within this ratio share a link.
-const ALIKE: f64 = 0.9;
+/// How much faster than a place allows the progress may be before it is held back there.
+const EXCESS: f64 = 1.01;
+/// Rounds of holding the progress back.
+const ROUNDS: usize = 40;
+/// Share of the limits that changes of speed may use at the least.
+const LEAST_REST: f64 = 0.35;
 /// Most places on one stretch.
 pub(super) const MOST_PLACES: usize = 16_384;
 
@@ -46,6 +50,9 @@ struct Place {
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
     places: Vec<Place>,
+    /// Places at whose beginning the progress is held, without acceleration.
+    holds: Vec<usize>,
+    more_holds: Vec<usize>,
     window: Window,
     links: Vec<Link>,
     turns: Vec<TurnShape>,
@@ -55,6 +62,8 @@ impl Pace {
     pub(super) fn new() -> Self {
         Self {
             places: Vec::with_capacity(MOST_PLACES + 1),
+            holds: Vec::with_capacity(MOST_PLACES + 1),
+            more_holds: Vec::with_capacity(MOST_PLACES + 1),
             window: Window::new(MOST_PLACES, false),
             links: Vec::with_capacity(MOST_PLACES + 1),
             turns: Vec::with_capacity(MOST_PLACES + 1),
@@ -136,11 +145,19 @@ impl Pace {
     /// Plans the progress from rest to rest; gives the distance at each multiple of `step`, until the
     /// end is reached. `false` when `take` has had enough.
     pub(super) fn progress(&mut self, step: f64, mut take: impl FnMut(f64) -> bool) -> bool {
-        self.link();
-        let mut begin = 0.0;
-        let mut time = 0.0;
-        let mut tick = 0.0;
-        let mut from = 0.0;
+        self.holds.clear();
+        for _ in 0..ROUNDS {
+            self.link();
+            if !self.hold_back(step) {
+                break;
+            }
+        }
+        self.walk(step, |distance, _, _| take(distance))
+    }
+
+    /// Gives distance, speed and link at each multiple of `step`.
+    fn walk(&self, step: f64, mut take: impl FnMut(f64, f64, usize) -> bool) -> bool {
+        let (mut begin, mut time, mut tick, mut from) = (0.0, 0.0, 0.0, 0.0);
         for (index, link) in self.links.iter().enumerate() {
             let to = self.turns.get(index).map_or(0.0, |turn| turn.speed);
             let connection = Connection {
@@ -153,7 +170,8 @@ impl Pace {
             };
             let end = time + feed.duration();
             while tick * step < end {
-                if !take(begin + feed.at(tick * step - time).position) {
+                let state = feed.at(tick * step - time);
+                if !take(begin + state.position, state.velocity, index) {
                     return false;
                 }
                 tick += 1.0;
@@ -165,66 +183,83 @@ impl Pace {
         true
     }
 
-    /// Joins places that are alike and plans the speeds between them.
+    /// Finds in each link the place that the progress passes too fast by most, and holds it there;
+    /// `false` when there is none.
+    fn hold_back(&mut self, step: f64) -> bool {
+        let mut more = std::mem::take(&mut self.more_holds);
+        more.clear();
+        let mut place = 0;
+        let mut worst = (EXCESS, None);
+        let mut current = 0;
+        self.walk(0.5 * step, |distance, speed, link| {
+            if link != current {
+                more.extend(worst.1);
+                worst = (EXCESS, None);
+                current = link;
+            }
+            while place + 1 < self.places.len() && self.places[place].end < distance {
+                place += 1;
+            }
+            let excess = speed / self.places[place].limits.velocity;
+            if excess > worst.0 {
+                worst = (excess, Some(place));
+            }
+            true
+        });
+        more.extend(worst.1);
+        let before = self.holds.len();
+        for &place in &more {
+            for hold in [place, place + 1] {
+                if hold > 0 && hold < self.places.len() {
+                    self.holds.push(hold);
+                }
+            }
+        }
+        self.more_holds = more;
+        self.holds.sort_unstable();
+        self.holds.dedup();
+        self.holds.len() > before
+    }
+
+    /// Plans the speeds at which the progress is held.
     fn link(&mut self) {
         self.links.clear();
         self.turns.clear();
         self.window.restart();
+        let mut first = 0;
         let mut start = 0.0;
-        let mut open: Option<(Tangential, Tangential)> = None; // least and largest of the group
-        let mut last_end = 0.0;
-        for place in &self.places {
-            let joined = open.map(|(least, most)| {
-                (
-                    Tangential {
-                        velocity: least.velocity.min(place.limits.velocity),
-                        acceleration: least.acceleration.min(place.limits.acceleration),
-                        jerk: least.jerk.min(place.limits.jerk),
-                    },
-                    Tangential {
-                        velocity: most.velocity.max(place.limits.velocity),
-                        acceleration: most.acceleration.max(place.limits.acceleration),
-                        jerk: most.jerk.max(place.limits.jerk),
-                    },
-                )
-            });
-            match joined {
-                Some((least, most)) if least.velocity >= ALIKE * most.velocity => {
-                    open = Some((least, most));
-                }
-                _ => {
-                    if let Some((least, _)) = open {
-                        self.links.push(Link {
-                            length: last_end - start,
-                            limits: least,
-                        });
-                        start = last_end;
-                    }
-                    open = Some((place.limits, place.limits));
-                }
+        let ends = self.holds.iter().copied().chain([self.places.len()]);
+        for end in ends {
+            let group = &self.places[first..end];
+            let (Some(one), Some(last)) = (group.first(), group.last()) else {
+                continue;
+            };
+            let mut limits = one.limits;
+            for place in group {
+                limits.velocity = limits.velocity.max(place.limits.velocity);
+                limits.acceleration = limits.acceleration.min(place.limits.acceleration);
+                limits.jerk = limits.jerk.min(place.limits.jerk);
             }
-            last_end = place.end;
-        }
-        if let Some((least, _)) = open {
-            self.links.push(Link {
-                length: last_end - start,
-                limits: least,
-            });
-        }
-        for (index, link) in self.links.iter().enumerate() {
-            if index == 0 {
-                self.window.begin(*link);
+            let link = Link {
+                length: last.end - start,
+                limits,
+            };
+            if first == 0 {
+                self.window.begin(link);
             } else {
-                let speed = link
+                let speed = self.places[first]
                     .limits
                     .velocity
-                    .min(self.links[index - 1].limits.velocity);
+                    .min(self.places[first - 1].limits.velocity);
                 let through = TurnShape {
                     speed,
                     ..TurnShape::STOP
                 };
-                self.window.push(through, *link);
+                self.window.push(through, link);
             }
+            self.links.push(link);
+            start = last.end;
+            first = end;
         }
         self.window.finish();
         while let Some(turn) = self.window.pull() {
@@ -244,13 +279,32 @@ struct Trial<'a, const N: usize> {
 impl<const N: usize> Trial<'_, N> {
     /// The largest speed of the ladder that the place allows, and what it leaves to changes of speed.
     fn limits_at(&self, distance: f64, feedrate: f64, guess: f64) -> Tangential {
-        let mut speed = (guess / (LADDER * LADDER)).min(feedrate);
-        loop {
+        let try_at = |speed: f64| {
             let [second, third] = self.differences(distance, speed);
-            if self.fits(distance, &second, &third) || speed < LOWEST * feedrate {
+            self.fits(distance, &second, &third)
+                .then(|| self.rest(distance, speed, &second, &third))
+        };
+        let mut speed = guess.min(feedrate);
+        if let Some(mut found) = try_at(speed) {
+            while speed < feedrate {
+                let faster = (speed / LADDER).min(feedrate);
+                let Some(better) = try_at(faster) else {
+                    break;
+                };
+                found = better;
+                speed = faster;
+            }
+            return found;
+        }
+        loop {
+            speed *= LADDER;
+            if let Some(found) = try_at(speed) {
+                return found;
+            }
+            if speed < LOWEST * feedrate {
+                let [second, third] = self.differences(distance, speed);
                 return self.rest(distance, speed, &second, &third);
             }
-            speed *= LADDER;
         }
     }
 
@@ -289,7 +343,7 @@ impl<const N: usize> Trial<'_, N> {
             velocity: speed,
             ..leg.limits
         };
-        let used = |difference: f64, bound: f64| (bound - difference.abs()).max(0.1 * bound);
+        let used = |difference: f64, bound: f64| (bound - difference.abs()).max(LEAST_REST * bound);
         for axis in 0..N {
             let share = leg.direction[axis].abs();
             if share > 0.0 {
