@@ -11,6 +11,10 @@ use crate::vector::Vector;
 /// Newton steps that sharpen a closest point: the third already squares away what is left.
 const POLISHING_STEPS: u32 = 4;
 
+/// How precisely the first place within a distance is found, as a share of the piece: it orders the
+/// corners passed within one piece and nothing else.
+const ENTRY_PRECISION: f64 = 1e-6;
+
 /// The closest point found of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Near {
@@ -43,6 +47,9 @@ pub(super) fn closest<const N: usize>(
             at: f64::NAN,
         },
     };
+    // Motion that comes to rest at the point has no simple root there; its ends are exact.
+    search.try_at(0.0);
+    search.try_at(1.0);
     search.descend(&squares, 0.0, 1.0, JUDGE_HALVINGS);
     (!search.near.at.is_nan()).then_some(search.near)
 }
@@ -68,7 +75,7 @@ pub(super) fn enters<const N: usize>(
         return None;
     }
     let (mut outside, mut inside) = (from, from + near.at * (1.0 - from));
-    for _ in 0..JUDGE_HALVINGS {
+    while inside - outside > ENTRY_PRECISION {
         let middle = 0.5 * (outside + inside);
         if away(middle) <= distance {
             inside = middle;

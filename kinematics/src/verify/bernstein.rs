@@ -96,11 +96,11 @@ impl<const N: usize> Cubic<N> {
 pub(super) fn halves<const K: usize>(coefficients: &[f64; K]) -> ([f64; K], [f64; K]) {
     let mut left = *coefficients;
     let mut right = *coefficients;
-    for level in 1..K {
+    for (level, first) in left.iter_mut().enumerate().skip(1) {
         for index in 0..K - level {
             right[index] = 0.5 * (right[index] + right[index + 1]);
         }
-        left[level] = right[0];
+        *first = right[0];
     }
     (left, right)
 }

@@ -137,7 +137,7 @@ impl<const N: usize> Judge<N> {
             line: self.record.last_line,
         };
         let distance = (self.state.position - self.route.end()).norm();
-        if !(distance <= length_slack(self.route.end().amax())) {
+        if distance > length_slack(self.route.end().amax()) {
             self.report.add(Violation::EndsElsewhere {
                 distance,
                 time,
@@ -207,7 +207,7 @@ impl<const N: usize> Judge<N> {
 
     fn judge_start(&mut self, start: &Sample<N>) {
         let distance = (start.position - self.state.position).norm();
-        if !(distance <= length_slack(start.position.amax())) {
+        if distance > length_slack(start.position.amax()) {
             self.report.add(Violation::StartsElsewhere { distance });
         }
         if let Some(axis) = moving_axis(start, &self.limits) {

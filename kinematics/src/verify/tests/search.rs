@@ -16,14 +16,14 @@ fn curve() -> impl Strategy<Value = Cubic<3>> {
     [point(), point(), point(), point()].prop_map(|points| Cubic { points })
 }
 
-const STEPS: u32 = 2_000;
+const STEPS: u32 = 500;
 
 fn shares() -> impl Iterator<Item = f64> {
     (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS))
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn the_deviation_from_lines_and_an_arc_is_the_largest_sampled(
@@ -57,13 +57,12 @@ proptest! {
             }
             sampled = [sampled[0].max(nearest[0]), sampled[1].max(nearest[1])];
         }
-        for k in 0..2 {
-            let bound = found.bounds[k];
-            prop_assert!(bound >= sampled[k] * (1.0 - 1e-12), "{bound} {}", sampled[k]);
-            prop_assert!(bound <= found.attained[k].value * (1.0 + 2e-6) + 1e-6, "{found:?}");
-            // Neighbouring samples are at most 24/2000 apart along the curve.
-            let step = 0.02 * if k == 0 { 1.0 } else { 100.0 };
-            prop_assert!(bound <= sampled[k] + step, "{bound} {}", sampled[k]);
+        let measures = found.bounds.into_iter().zip(found.attained).zip(sampled);
+        // Neighbouring samples are at most 32/500 apart along the curve; tolerances are above 0.01.
+        for (((bound, attained), sampled), apart) in measures.zip([0.07, 7.0]) {
+            prop_assert!(bound >= sampled * (1.0 - 1e-12), "{bound} {sampled}");
+            prop_assert!(bound <= attained.value * (1.0 + 2e-6) + 1e-6, "{found:?}");
+            prop_assert!(bound <= sampled + apart, "{bound} {sampled}");
         }
     }
 
@@ -72,11 +71,12 @@ proptest! {
         at in point(), radius in 0.3..3.0_f64, sweep in -15.0..15.0_f64, lift in -4.0..4.0_f64,
     ) {
         let start = Vector::<3>::new(radius, 0.0, 0.0);
-        let turns = (sweep.abs() / std::f64::consts::TAU).floor();
+        let turns = (1..=2).filter(|k| sweep.abs() > f64::from(*k) * std::f64::consts::TAU).count();
+        let turns = u32::try_from(turns).unwrap();
         let end = Vector::<3>::new(radius * sweep.cos(), radius * sweep.sin(), lift);
         let center = Vector::<3>::zeros();
         let arc =
-            Arc::about(start, end, center, [0, 1], sweep > 0.0, turns as u32).unwrap();
+            Arc::about(start, end, center, [0, 1], sweep > 0.0, turns).unwrap();
         let mut route = Route::new(start);
         route.expect(&Move::arc(arc, Feedrate::RAPID, Tolerance::new(0.1).unwrap())).unwrap();
         let found = route.get(0).unwrap().distance(&at);
@@ -107,6 +107,6 @@ proptest! {
         };
         let sampled = shares().map(speed).fold(0.0, f64::max);
         prop_assert!(found >= sampled * (1.0 - 1e-12), "{found} {sampled}");
-        prop_assert!(found <= sampled * (1.0 + 1e-3) + 1e-12, "{found} {sampled}");
+        prop_assert!(found <= sampled * (1.0 + 1e-2) + 1e-12, "{found} {sampled}");
     }
 }
