@@ -1,0 +1,18 @@
+//! One name per asserted bound, with its reason.
+//!
+//! Not here: limits and tolerances, which the judge holds the motion to.
+
+/// A plan that may stop everywhere is never slower than stopping everywhere, but for the rounding of
+/// the sum of its durations, relative.
+pub const NEVER_SLOWER: f64 = 1e-9;
+
+/// Mirrored, permuted and scaled paths take the same time, relative: searches end within
+/// [`SEARCH_PRECISION`](toolglide_kinematics::numeric::SEARCH_PRECISION) of a value that rounding may
+/// bring to either side.
+pub const SAME_DURATION: f64 = 1e-6;
+
+/// Durations that were printed or derived with five digits, relative.
+pub const PRINTED: f64 = 1e-3;
+
+/// Fewest plans that one run of the random paths judges.
+pub const FEWEST_PLANS: u32 = 2_000;
