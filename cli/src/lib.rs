@@ -5,6 +5,7 @@
 //! wrong use or wrong input, [`INTERRUPTED`] when stopped from the keyboard.
 
 mod args;
+mod decimals;
 mod error;
 mod interrupt;
 mod machines;

@@ -179,11 +179,7 @@ fn one_per_axis(option: &'static str, values: &PerAxis, axes: usize) -> Result<V
         given if given == axes => Ok(list.clone()),
         given => Err(CliError::Option {
             option,
-            value: if given == 1 {
-                "1 number".to_owned()
-            } else {
-                format!("{given} numbers")
-            },
+            value: format!("a list of {given}"),
             bound: format!("the machine has {axes} axes"),
         }),
     }

@@ -3,6 +3,7 @@
 //! Columns are found by their names, so that other columns and another order do no harm. Not here:
 //! judging.
 
+use crate::decimals::Decimals;
 use crate::error::CliError;
 use crate::set_points::column;
 use std::io::BufRead;
@@ -11,9 +12,6 @@ use toolglide_kinematics::{Axis, Vector};
 
 /// Longest line that is read, bytes: some hundred columns.
 const LONGEST_LINE: usize = 1 << 14;
-
-/// Digits from which a number is as exact as an `f64` can be.
-const FULL_DIGITS: u32 = 15;
 
 /// Name of the column of time.
 const TIME: &str = "t_s";
@@ -29,13 +27,6 @@ pub(crate) struct Table<R, const N: usize> {
     quantities: Vec<Option<usize>>,
     last: Option<f64>,
     decimals: Decimals,
-}
-
-/// How finely the numbers of a column are written.
-#[derive(Clone, Copy, Debug, Default)]
-struct Decimals {
-    most: u32,
-    full: bool,
 }
 
 impl<R: BufRead, const N: usize> Table<R, N> {
@@ -139,11 +130,7 @@ impl<R: BufRead, const N: usize> Table<R, N> {
     /// The step in which the positions read so far are written, mm; 0 when they are written as
     /// exactly as an `f64` can be.
     pub(crate) fn resolution(&self) -> f64 {
-        if self.decimals.full {
-            0.0
-        } else {
-            10.0_f64.powi(-i32::try_from(self.decimals.most).unwrap_or(i32::MAX))
-        }
+        self.decimals.resolution()
     }
 
     /// Reads the next line that is not empty; `false` at the end of the file.
@@ -183,33 +170,6 @@ impl<R: BufRead, const N: usize> Table<R, N> {
             line: self.line,
             reason: reason.into(),
         }
-    }
-}
-
-impl Decimals {
-    fn take(&mut self, cell: &str) {
-        let (digits, exponent) = match cell.split_once(['e', 'E']) {
-            Some((digits, exponent)) => (digits, exponent.parse::<i64>().unwrap_or(0)),
-            None => (cell, 0),
-        };
-        let mut significant = 0_u32;
-        let mut after_point = 0_i64;
-        let mut point = false;
-        for digit in digits.bytes() {
-            match digit {
-                b'.' => point = true,
-                b'0'..=b'9' => {
-                    after_point += i64::from(point);
-                    if digit != b'0' || significant > 0 {
-                        significant += 1;
-                    }
-                }
-                _ => {}
-            }
-        }
-        let decimals = u32::try_from((after_point - exponent).max(0)).unwrap_or(u32::MAX);
-        self.most = self.most.max(decimals);
-        self.full |= significant >= FULL_DIGITS;
     }
 }
 

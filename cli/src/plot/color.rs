@@ -3,6 +3,11 @@
 /// Colours of the axes, in machine order.
 pub(crate) const AXES: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
 
+/// Colour of an axis.
+pub(crate) fn of_axis(axis: usize) -> &'static str {
+    AXES[axis % AXES.len()]
+}
+
 /// The motion as a whole.
 pub(crate) const MOTION: &str = "#7b2cbf";
 

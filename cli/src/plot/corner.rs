@@ -6,14 +6,17 @@
 use std::collections::VecDeque;
 use toolglide_kinematics::{Arc, Move, Path, Piece, Tolerance, Vector, vector};
 
-/// Points of the path and pieces of the motion that are remembered from before a corner.
+/// Points of the path that are remembered from before a corner.
 const BEFORE: usize = 96;
+
+/// Pieces of the motion that are remembered from before a corner.
+const PIECES_BEFORE: usize = 512;
 
 /// Points of the path that are gathered after a corner.
 const AFTER: usize = 96;
 
 /// Moves before and after a corner whose motion is gathered.
-const MOVES_AROUND: u32 = 12;
+const MOVES_AROUND: u32 = 40;
 
 /// Most pieces that are gathered for one corner.
 const MOST_PIECES: usize = 4096;
@@ -139,7 +142,7 @@ impl<const N: usize> CornerFinder<N> {
                 corner.pieces.push(*piece);
             }
         }
-        if self.pieces.len() >= BEFORE {
+        if self.pieces.len() >= PIECES_BEFORE {
             self.pieces.pop_front();
         }
         self.pieces.push_back(*piece);
@@ -265,7 +268,7 @@ mod tests {
         let corner = finder.finish().unwrap();
         assert_eq!(corner.line, 2, "{corner:?}");
         assert!((corner.turn.to_degrees() - 135.0).abs() < 1e-9, "turn");
-        assert!(corner.path.len() > 50, "path on both sides");
-        assert!(corner.pieces.len() >= 14, "{} pieces", corner.pieces.len());
+        assert!(corner.path.len() > 40, "path on both sides");
+        assert!(corner.pieces.len() > 40, "{} pieces", corner.pieces.len());
     }
 }

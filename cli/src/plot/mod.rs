@@ -7,6 +7,7 @@ mod canvas;
 mod chart;
 mod color;
 mod corner;
+mod curve;
 mod envelope;
 mod motion;
 mod path;

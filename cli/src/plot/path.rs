@@ -14,6 +14,14 @@ const FLAT: f64 = 1e-3;
 /// Extent that is shown around a path of no extent, mm.
 const LEAST_EXTENT: f64 = 1.0;
 
+/// Widths of the line of a path, pixels.
+const THICKEST: f64 = 1.7;
+/// As above.
+const FINEST: f64 = 0.45;
+
+/// A path of this many pixels still has the thickest line.
+const LIGHT: f64 = 8000.0;
+
 /// Width of the scale of colours, pixels.
 const SCALE_WIDTH: f64 = 128.0;
 
@@ -47,9 +55,10 @@ pub(crate) fn draw<const N: usize>(
     let (rapids, cuts) = outlines(plot, &chart, [across, upward], fastest);
     let style = "fill=\"none\" stroke=\"#9aa3ad\" stroke-width=\"1\" stroke-dasharray=\"5 4\"";
     canvas.path(&rapids, style);
+    let stroke = stroke(plot.programmed.length() * chart.pixels(1.0));
     for (shade, outline) in cuts.iter().enumerate() {
         let style = format!(
-            "fill=\"none\" stroke=\"{}\" stroke-width=\"1.7\" stroke-linecap=\"round\" \
+            "fill=\"none\" stroke=\"{}\" stroke-width=\"{stroke:.2}\" stroke-linecap=\"round\" \
              stroke-linejoin=\"round\"",
             color::shade(shade)
         );
@@ -75,6 +84,13 @@ pub(crate) fn draw<const N: usize>(
     }
     chart.draw_name_across(canvas, &name);
     draw_scale(canvas, &chart, fastest);
+}
+
+/// Width of the line of a path that goes over many pixels: the longer, the finer, so that lines
+/// side by side stay lines.
+fn stroke(pixels: f64) -> f64 {
+    let share = (LIGHT / pixels.max(LIGHT)).sqrt();
+    (THICKEST * share).max(FINEST)
 }
 
 /// The two axes to look at: X and Y unless the path is flat there.

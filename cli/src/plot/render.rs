@@ -33,21 +33,19 @@ pub(crate) fn png(svg: &str) -> Result<Vec<u8>, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::{Anchor, Canvas};
     use super::*;
 
     #[test]
     fn letters_appear_without_any_font_of_the_system() {
-        let blank =
-            png("<svg xmlns='http://www.w3.org/2000/svg' width='80' height='20'/>").unwrap();
-        let lettered = png(
-            "<svg xmlns='http://www.w3.org/2000/svg' width='80' height='20' font-family='Nowhere'>\
-             <text x='2' y='15'>mm/s²</text></svg>",
-        )
-        .unwrap();
-        assert!(
-            lettered.len() > blank.len() + 100,
-            "{} bytes",
-            lettered.len()
-        );
+        let drawn = |text: &str| {
+            let mut canvas = Canvas::new(80.0, 20.0);
+            canvas.text((2.0, 15.0), Anchor::Start, 13.0, "", text);
+            png(&canvas.finish()).unwrap().len()
+        };
+        let blank = drawn("");
+        for text in ["mm/s²", "µ", "·", "±", "°", "\u{2212}"] {
+            assert!(drawn(text) > blank + 20, "{text} is drawn");
+        }
     }
 }

@@ -61,6 +61,14 @@ impl<const N: usize> Trace<N> {
         (self.low, self.high)
     }
 
+    /// Length of the path through the points that were kept.
+    pub(crate) fn length(&self) -> f64 {
+        self.points
+            .windows(2)
+            .map(|pair| (pair[1].0 - pair[0].0).norm())
+            .sum()
+    }
+
     /// The points that were kept, and the last one.
     pub(crate) fn points(&self) -> impl Iterator<Item = (Vector<N>, f64)> + '_ {
         self.points.iter().copied().chain([self.last])
