@@ -4,7 +4,7 @@
 //! machine or a program makes of the values.
 
 use crate::planner::METHODS;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -72,7 +72,7 @@ pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) job: JobArgs,
     /// How corners are taken.
-    #[arg(long, default_value = METHODS[0].name, value_parser = PossibleValuesParser::new(METHODS.iter().map(|method| method.name)))]
+    #[arg(long, default_value = METHODS[0].name, value_parser = methods())]
     pub(crate) method: String,
     /// Time between two set-points, s [default: that of the machine].
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
@@ -109,6 +109,14 @@ pub(crate) struct MachinesArgs {
 /// One number for all axes, or one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PerAxis(pub(crate) Vec<f64>);
+
+fn methods() -> PossibleValuesParser {
+    PossibleValuesParser::new(
+        METHODS
+            .iter()
+            .map(|method| PossibleValue::new(method.name).help(method.summary)),
+    )
+}
 
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text

@@ -65,8 +65,8 @@ impl Chart {
         self
     }
 
-    /// Draws the grid with its numbers; those across only where `numbers_across`.
-    pub(crate) fn draw_grid(&self, canvas: &mut Canvas, numbers_across: bool) {
+    /// Draws the grid with its numbers; those across in units of `unit_across`, if at all.
+    pub(crate) fn draw_grid(&self, canvas: &mut Canvas, unit_across: f64, numbers_across: bool) {
         let pitch_up = GRID_PITCH.min(0.25 * self.height).max(32.0);
         let (step, values) = ticks(self.upward, self.height / pitch_up);
         for value in values {
@@ -75,9 +75,10 @@ impl Chart {
             let at = (self.x - 7.0, y + 0.36 * SMALL);
             canvas.text(at, Anchor::End, SMALL, LABEL, &label(value, step));
         }
-        let (step, values) = ticks(self.across, self.width / GRID_PITCH);
+        let across = (self.across.0 / unit_across, self.across.1 / unit_across);
+        let (step, values) = ticks(across, self.width / GRID_PITCH);
         for value in values {
-            let (x, _) = self.at(value, self.upward.0);
+            let (x, _) = self.at(value * unit_across, self.upward.0);
             canvas.line((x, self.y), (x, self.y + self.height), GRID);
             if numbers_across {
                 let at = (x, self.y + self.height + 17.0);

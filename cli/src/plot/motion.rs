@@ -14,6 +14,12 @@ const FAR_RAPID: f64 = 2.0;
 /// Numbers from here on are shown in thousands: mm/s³ become m/s³.
 const THOUSANDS: f64 = 20_000.0;
 
+/// Motions from here on are told in minutes, s.
+const TEN_MINUTES: f64 = 600.0;
+
+/// Motions from here on are told in hours, s.
+const FIVE_HOURS: f64 = 18_000.0;
+
 /// What goes back less than this share of what goes forward gets no more room than that.
 const BACKWARD: f64 = 0.08;
 
@@ -91,7 +97,7 @@ fn feedrate<const N: usize>(
         fastest.max(cutting)
     };
     let chart = chart((0.0, if most > 0.0 { HEADROOM * most } else { 1.0 }));
-    chart.draw_grid(canvas, false);
+    chart.draw_grid(canvas, time_unit(plot.time).0, false);
     canvas.clip(chart.x, chart.y, chart.width, chart.height);
     draw_curve(
         canvas,
@@ -180,7 +186,7 @@ fn axes<const N: usize>(
         .fold(0.0, f64::min);
     let forward = !drawn.contains(&true) && lowest_value > -BACKWARD * most;
     let chart = chart((if forward { -BACKWARD * bound } else { -bound }, bound));
-    chart.draw_grid(canvas, lowest);
+    chart.draw_grid(canvas, time_unit(plot.time).0, lowest);
     canvas.clip(chart.x, chart.y, chart.width, chart.height);
     for axis in (0..N).rev().filter(|&axis| plot.moves(axis)) {
         let color = color::of_axis(axis);
@@ -216,7 +222,7 @@ fn axes<const N: usize>(
     canvas.unclip();
     chart.draw_frame(canvas, &format!("{}, {unit}", panel.title));
     if lowest {
-        chart.draw_name_across(canvas, "time, s");
+        chart.draw_name_across(canvas, &format!("time, {}", time_unit(plot.time).1));
     }
     let names: Vec<String> = plot.letters.iter().map(char::to_string).collect();
     let mut entries: Vec<(&str, &str, bool)> = names
@@ -239,6 +245,17 @@ fn axes<const N: usize>(
         entries.push((&told, "", false));
     }
     legend(canvas, &chart, &entries);
+}
+
+/// The unit in which a motion of this length is told, s, and its name.
+fn time_unit(duration: f64) -> (f64, &'static str) {
+    if duration < TEN_MINUTES {
+        (1.0, "s")
+    } else if duration < FIVE_HOURS {
+        (60.0, "min")
+    } else {
+        (3600.0, "h")
+    }
 }
 
 /// Limits that are too far away to be drawn, in words.

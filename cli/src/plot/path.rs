@@ -49,7 +49,7 @@ pub(crate) fn draw<const N: usize>(
         upward: range(upward),
     }
     .with_equal_scales();
-    chart.draw_grid(canvas, true);
+    chart.draw_grid(canvas, 1.0, true);
     canvas.clip(x, y, width, height);
     let fastest = plot.cutting_speed;
     let (rapids, cuts) = outlines(plot, &chart, [across, upward], fastest);

@@ -65,7 +65,7 @@ pub(crate) fn draw<const N: usize>(
     chart.across = (middle[plane[0]] - half, middle[plane[0]] + half);
     chart.upward = (middle[plane[1]] - half, middle[plane[1]] + half);
     let chart = chart.with_equal_scales();
-    chart.draw_grid(canvas, true);
+    chart.draw_grid(canvas, 1.0, true);
     canvas.clip(x, y, width, height);
     let on_chart = |point: Vector<N>| {
         let (across, upward) = place(point);
