@@ -35,4 +35,6 @@ pub use sample::{Sample, SamplePeriod};
 pub use tolerance::{Feedrate, Tolerance};
 pub use toolpath::{Move, Path, Toolpath, check_contact};
 pub use vector::Vector;
-pub use verify::{Judge, Peak, Place, Report, Violation, verify};
+pub use verify::{
+    Judge, Peak, Place, Report, SetPointJudge, VerifyError, Violation, verify, verify_set_points,
+};

@@ -68,5 +68,6 @@ pub const JUDGE_HALVINGS: u32 = 40;
 /// reached by motion that follows its path, a fraction of a second for motion made to be awkward.
 pub const JUDGE_PARTS: u32 = 200_000;
 
-/// How many moves ahead the judge of set-points looks for a motion that has left its path.
-pub const LOOK_AHEAD_MOVES: u32 = 64;
+/// How many moves ahead the judge of set-points looks at most for a motion that has left its path:
+/// enough for moves of a hundredth of the tolerance, and a millisecond at worst.
+pub const LOOK_AHEAD_MOVES: u32 = 1024;

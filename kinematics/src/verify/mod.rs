@@ -15,7 +15,9 @@
 
 mod approach;
 mod bernstein;
+mod chord;
 mod deviation;
+mod differences;
 mod dynamics;
 mod helix;
 mod judge;
@@ -23,6 +25,8 @@ mod leg;
 mod record;
 mod report;
 mod route;
+mod setpoints;
+mod tracker;
 mod violation;
 
 #[cfg(test)]
@@ -30,6 +34,7 @@ mod tests;
 
 pub use judge::Judge;
 pub use report::{Peak, Place, Report};
+pub use setpoints::{SetPointJudge, VerifyError, verify_set_points};
 pub use violation::Violation;
 
 use crate::limits::Limits;

@@ -66,53 +66,65 @@ impl Record {
         }
     }
 
-    /// Forgets the first move and reports what it missed; the end of the last move is no corner.
+    /// Forgets the first move and reports what it missed, and a corner out of its turn.
     pub(super) fn close<const N: usize>(
         &mut self,
         route: &mut Route<N>,
         report: &mut Report<N>,
         time: f64,
     ) {
-        let Some(leg) = route.forget_first() else {
+        let Some((leg, is_corner)) = close_leg(route, report, time) else {
             return;
         };
-        let is_corner = route.base() < route.len();
-        let (place, approach_time) = (leg.place, leg.approach_time);
+        let place = leg.place;
         self.last_line = place.line;
-        let missed = leg.approach > leg.corner_allowed;
-        if is_corner && leg.approach.is_finite() {
-            report
-                .corner_error
-                .raise(leg.approach, approach_time, place);
-            report
-                .corner_ratio
-                .raise(leg.approach / leg.corner_allowed, approach_time, place);
-            if missed {
-                report.add(Violation::CornerMissed {
-                    value: leg.approach,
-                    tolerance: leg.corner_tolerance,
-                    time: approach_time,
-                    place,
-                });
-            }
+        if self.next > place.mv {
+            return;
         }
-        if self.next <= place.mv {
-            if is_corner && !missed {
-                report.add(Violation::CornerOrder {
-                    time: approach_time,
-                    place,
-                });
-            }
-            self.next = place.mv + 1;
-            while route
-                .get(self.next)
-                .is_some_and(|leg| leg.approach <= leg.corner_allowed)
-            {
-                self.next += 1;
-            }
+        if is_corner && leg.approach <= leg.corner_allowed {
+            report.add(Violation::CornerOrder {
+                time: leg.approach_time,
+                place,
+            });
         }
-        close_parts(&leg, report, time, is_corner);
+        self.next = place.mv + 1;
+        while route
+            .get(self.next)
+            .is_some_and(|leg| leg.approach <= leg.corner_allowed)
+        {
+            self.next += 1;
+        }
     }
+}
+
+/// Forgets the first move and reports what it missed; says whether its end was a corner, which
+/// that of the last move is not.
+pub(super) fn close_leg<const N: usize>(
+    route: &mut Route<N>,
+    report: &mut Report<N>,
+    time: f64,
+) -> Option<(Leg<N>, bool)> {
+    let leg = route.forget_first()?;
+    let is_corner = route.base() < route.len();
+    let (place, approach_time) = (leg.place, leg.approach_time);
+    if is_corner && leg.approach.is_finite() {
+        report
+            .corner_error
+            .raise(leg.approach, approach_time, place);
+        report
+            .corner_ratio
+            .raise(leg.approach / leg.corner_allowed, approach_time, place);
+        if leg.approach > leg.corner_allowed {
+            report.add(Violation::CornerMissed {
+                value: leg.approach,
+                tolerance: leg.corner_tolerance,
+                time: approach_time,
+                place,
+            });
+        }
+    }
+    close_parts(&leg, report, time, is_corner);
+    Some((leg, is_corner))
 }
 
 /// Reports stops, dwells and arcs that were cut short.

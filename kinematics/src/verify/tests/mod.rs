@@ -3,4 +3,5 @@
 mod build;
 mod defects;
 mod order;
+mod points;
 mod search;

@@ -1,0 +1,112 @@
+//! The straight way between two set-points, and how far the motion may leave it.
+//!
+//! Source: a motion of acceleration at most `a` leaves the chord of a time `t` by at most
+//! `a t^2 / 8`, and one that rests at a point within a time `t` is at most `j t^3 / 6` away from it.
+//! Not here: the path.
+
+use super::differences::Recent;
+use super::leg::Leg;
+use crate::limits::Limits;
+use crate::numeric::LIMIT_SLACK;
+use crate::vector::Vector;
+
+/// Two set-points in a row; the first point of all is a chord of no length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chord<const N: usize> {
+    from: Vector<N>,
+    pub(super) to: Vector<N>,
+    pub(super) begin: f64,
+    pub(super) duration: f64,
+    /// How far the motion may be from the chord, rounding included.
+    pub(super) slack: f64,
+    /// How far rounding may have moved the newer point.
+    pub(super) rounding: f64,
+    /// How far each axis may move from rest, or to rest, within the time.
+    reach: Vector<N>,
+}
+
+impl<const N: usize> Chord<N> {
+    /// The chord between the two newest points, of a motion that began at `first_time`.
+    pub(super) fn newest(recent: &Recent<N>, limits: &Limits<N>, first_time: f64) -> Option<Self> {
+        let points = recent.points();
+        let (end, to) = *points.first()?;
+        let (begin, from) = *points.get(1).unwrap_or(&points[0]);
+        let duration = end - begin;
+        let mean = recent.mean(2);
+        let rounding = recent.rounding(end, &to);
+        let bend = Vector::<N>::from_fn(|axis, _| {
+            let (a, j) = (limits.acceleration()[axis], limits.jerk()[axis]);
+            // Until two chords are known the motion has only just left its rest.
+            mean.map_or((j * duration).min(a), |mean| {
+                let near = mean.value[axis].abs() + mean.noise[axis] + j * mean.span;
+                if near < a { near } else { a }
+            })
+        });
+        let sagitta = bend.norm() * duration * duration / 8.0;
+        let reach = Vector::from_fn(|axis, _| {
+            let (a, j) = (limits.acceleration()[axis], limits.jerk()[axis]);
+            let far = (0.5 * a).min(j * duration / 6.0) * duration * duration;
+            far * (1.0 + LIMIT_SLACK) + rounding[axis]
+        });
+        Some(Self {
+            from,
+            to,
+            begin: begin - first_time,
+            duration,
+            slack: sagitta * (1.0 + LIMIT_SLACK) + rounding.norm(),
+            rounding: rounding.norm(),
+            reach,
+        })
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        (self.to - self.from).norm()
+    }
+
+    /// How far a point certainly is from the motion, and when it is closest.
+    pub(super) fn distance(&self, point: &Vector<N>) -> (f64, f64) {
+        let span = self.to - self.from;
+        let offset = point - self.from;
+        let square = span.norm_squared();
+        let share = if square > 0.0 {
+            (offset.dot(&span) / square).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let distance = (offset - span * share).norm() - self.slack;
+        (distance.max(0.0), self.begin + share * self.duration)
+    }
+
+    /// The first share of the chord from `from` on that may be within `distance` of a point.
+    pub(super) fn enters(&self, point: &Vector<N>, distance: f64, from: f64) -> Option<f64> {
+        let span = self.to - self.from;
+        let offset = self.from - point;
+        let room = distance + self.slack;
+        if (offset + span * from).norm() <= room {
+            return Some(from);
+        }
+        let square = span.norm_squared();
+        let nearest = -offset.dot(&span) / square;
+        // Not a number for a chord of no length.
+        if nearest.is_nan() || nearest < from {
+            return None;
+        }
+        let nearest = nearest.min(1.0);
+        if (offset + span * nearest).norm() > room {
+            return None;
+        }
+        let foot = -offset.dot(&span) / square;
+        let height = (offset + span * foot).norm_squared();
+        let half = ((room * room - height).max(0.0) / square).sqrt();
+        Some((foot - half).clamp(from, nearest))
+    }
+
+    /// Whether the motion may have rested at the end of a move within this time.
+    pub(super) fn may_rest_at(&self, leg: &Leg<N>) -> bool {
+        (0..N).all(|axis| {
+            let room = self.reach[axis] + leg.slack;
+            (self.from[axis] - leg.end[axis]).abs() <= room
+                && (self.to[axis] - leg.end[axis]).abs() <= room
+        })
+    }
+}
