@@ -14,7 +14,7 @@ pub enum Method {
     KcsUninterrupted,
     /// Interrupted acceleration at every corner.
     KcsInterrupted,
-    /// A full stop at every corner.
+    /// A full stop at the end of every move; arcs are smooth in between.
     ExactStop,
 }
 

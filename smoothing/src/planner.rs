@@ -34,6 +34,7 @@ pub struct KinematicSmoothing<const N: usize> {
     position: Vector<N>,
     index: u32,
     finished: bool,
+    stops: bool,
     arc: Option<(Chords<N>, Move<N>, u32)>,
     route: Route<N>,
 }
@@ -53,11 +54,13 @@ impl<const N: usize> KinematicSmoothing<N> {
             position: start,
             index: 0,
             finished: false,
+            stops: settings.method == Method::ExactStop,
             arc: None,
-            route: if settings.method == Method::Kcs {
-                Route::Stretches(Box::new(Stretches::new(start, settings)))
-            } else {
-                Route::Corners(Box::new(Corners::new(start, settings)))
+            route: match settings.method {
+                Method::Kcs | Method::ExactStop => {
+                    Route::Stretches(Box::new(Stretches::new(start, settings)))
+                }
+                _ => Route::Corners(Box::new(Corners::new(start, settings))),
             },
         }
     }
@@ -72,7 +75,7 @@ impl<const N: usize> KinematicSmoothing<N> {
             Some(point) => self.take_point(&step, index, point, bulge),
             None => {
                 self.arc = None;
-                if step.stops() {
+                if self.stops || step.stops() {
                     self.route.rest();
                 }
                 if self.finished {
@@ -155,7 +158,7 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
         match next.path() {
             Path::Line { end } => {
                 self.take_point(next, index, *end, 0.0);
-                if next.stops() {
+                if self.stops || next.stops() {
                     self.route.rest();
                 }
             }

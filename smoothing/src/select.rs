@@ -30,10 +30,10 @@ impl<const N: usize> Selection<N> {
     /// The selections whose windows a method plans with.
     pub(crate) fn of(settings: &Settings<N>) -> Vec<Self> {
         let kinds: &[Kind] = match settings.method {
-            Method::Kcs => &[Kind::Fastest, Kind::Interrupted],
+            // Between its stops, an exact stop has only the chords of an arc to turn.
+            Method::Kcs | Method::ExactStop => &[Kind::Fastest, Kind::Interrupted],
             Method::KcsInterrupted => &[Kind::Interrupted],
             Method::KcsUninterrupted => &[Kind::Uninterrupted],
-            Method::ExactStop => &[],
         };
         kinds
             .iter()
