@@ -70,6 +70,16 @@ pub enum CliError {
         /// What is wrong.
         reason: String,
     },
+    /// Set-points are outside what is allowed so far that they cannot be judged further.
+    #[error("{}:{line}: {reason}", file.display())]
+    Outside {
+        /// The file.
+        file: PathBuf,
+        /// Line, counted from 1.
+        line: u64,
+        /// What is wrong.
+        reason: String,
+    },
     /// The planner refuses a move.
     #[error("{program}:{line}: {reason}")]
     Plan {
@@ -121,6 +131,7 @@ impl CliError {
         match self {
             Self::BrokenPipe => DONE,
             Self::Interrupted => INTERRUPTED,
+            Self::Outside { .. } => OUTSIDE,
             _ => REFUSED,
         }
     }

@@ -12,6 +12,8 @@ use toolglide_kinematics::verify::{Peak, Report, Violation};
 pub(crate) struct Summary {
     pub(crate) program: String,
     pub(crate) machine: String,
+    #[serde(rename = "setpoints_file", skip_serializing_if = "Option::is_none")]
+    pub(crate) set_points: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
     pub(crate) axes: Vec<char>,
@@ -54,6 +56,7 @@ impl Summary {
         Self {
             program: program.to_owned(),
             machine: setup.machine.clone(),
+            set_points: None,
             method: None,
             axes: setup.letters(),
             cycle_time_s: report.cycle_time,
@@ -92,7 +95,11 @@ impl Summary {
         let mut text = String::new();
         let how = match &self.method {
             Some(method) => format!("planned by {method} for {}", self.machine),
-            None => format!("set-points judged for {}", self.machine),
+            None => format!(
+                "{} judged for {}",
+                self.set_points.as_deref().unwrap_or("set-points"),
+                self.machine
+            ),
         };
         let period = self.period_s.map_or_else(String::new, |period| {
             format!(" every {} ms", shortest(1e3 * period))

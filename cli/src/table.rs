@@ -164,7 +164,17 @@ impl<R: BufRead, const N: usize> Table<R, N> {
         std::str::from_utf8(&self.text).map_err(|_| self.refuse("this is not text"))
     }
 
-    fn refuse(&self, reason: impl Into<String>) -> CliError {
+    /// The motion is outside what is allowed from its first row on.
+    pub(crate) fn outside(&self, reason: String) -> CliError {
+        CliError::Outside {
+            file: self.file.clone(),
+            line: self.line,
+            reason,
+        }
+    }
+
+    /// The row read last is refused.
+    pub(crate) fn refuse(&self, reason: impl Into<String>) -> CliError {
         CliError::Row {
             file: self.file.clone(),
             line: self.line,

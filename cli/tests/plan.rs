@@ -1,5 +1,7 @@
 //! Planning: what the rows, the summary and the files hold.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use common::{Folder, SQUARE, rows, toolglide};

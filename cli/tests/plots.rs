@@ -1,5 +1,7 @@
 //! Pictures: what is written on them, and that they stay small however long the motion is.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use common::{Folder, SQUARE, toolglide};

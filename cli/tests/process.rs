@@ -1,5 +1,7 @@
 //! The binary itself: exit codes, broken pipes, interruption.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 

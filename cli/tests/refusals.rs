@@ -1,5 +1,7 @@
 //! Wrong use and wrong input: exit code 2, one clear message, and no file left behind.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use common::{Folder, SQUARE, toolglide};
