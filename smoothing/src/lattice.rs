@@ -4,7 +4,8 @@
 //! corner offers a full stop and the motions that the windows have scaled; every motion of a window
 //! is followed by one of the same window that fits, and a stop is followed by a stop, so no choice
 //! leads into a dead end. The plan that stops at every corner is one of the ways, so the cheapest is
-//! never slower. Not here: where the candidates come from.
+//! never slower. A way that lies behind another by more than the time to stop is given up: the other
+//! could have stopped by then, and would still be ahead. Not here: where the candidates come from.
 
 use crate::turn::TurnShape;
 use crate::window::Link;
@@ -35,6 +36,8 @@ pub(crate) struct Lattice {
     size: usize,
     wait: usize,
     finished: bool,
+    /// Longest time that stopping takes on any move so far.
+    time_to_stop: f64,
 }
 
 impl Lattice {
@@ -48,6 +51,7 @@ impl Lattice {
             size,
             wait: 0,
             finished: false,
+            time_to_stop: 0.0,
         };
         lattice.restart();
         lattice
@@ -63,6 +67,7 @@ impl Lattice {
         self.chosen.clear();
         self.wait = PATIENCE.min(self.size);
         self.finished = false;
+        self.time_to_stop = 0.0;
     }
 
     /// Takes a move and the candidates of the corner at its end.
@@ -74,6 +79,10 @@ impl Lattice {
         if let Some(last) = self.columns.back() {
             column.reach_from(last, link);
         }
+        let limits = &link.limits;
+        let time_to_stop =
+            limits.velocity / limits.acceleration + limits.acceleration / limits.jerk;
+        self.time_to_stop = self.time_to_stop.max(time_to_stop);
         self.columns.push_back(column);
         self.wait = self.wait.saturating_sub(1);
         if self.wait == 0 || self.columns.len() > self.size {
@@ -96,9 +105,11 @@ impl Lattice {
     /// Commits the part of the way on which all survivors agree; when the lattice is full, half of
     /// the way that could stop now.
     fn commit(&mut self) {
-        let Some(last) = self.columns.back() else {
+        let Some(last) = self.columns.back_mut() else {
             return;
         };
+        last.give_up(self.time_to_stop);
+        let last = *last;
         let end = self.columns.len() - 1;
         // Walk all survivors back at once until they meet.
         let mut alive = [false; MOST_CANDIDATES];
@@ -138,8 +149,8 @@ impl Lattice {
         self.settle();
     }
 
-    /// Half of the cheapest way to a stop at the last corner, which exists always; ways that left it
-    /// before are given up.
+    /// Half of the cheapest way, or of the cheapest that stops now while that is not far behind; ways
+    /// that left it before are given up.
     fn force(&mut self) -> (usize, usize) {
         let end = self.columns.len() - 1;
         let middle = (end / 2).max(1);
@@ -197,11 +208,23 @@ impl Column {
         }
     }
 
+    /// The stop, unless it was given up or is not offered; the cheapest otherwise.
     fn stop(&self) -> usize {
-        self.shapes[..self.count]
-            .iter()
-            .position(TurnShape::is_stop)
+        (0..self.count)
+            .find(|&candidate| {
+                self.shapes[candidate].is_stop() && self.costs[candidate].is_finite()
+            })
             .unwrap_or_else(|| self.cheapest())
+    }
+
+    /// Gives up what lies behind the cheapest by more than a time.
+    fn give_up(&mut self, behind: f64) {
+        let most = self.costs[self.cheapest()] + behind;
+        for cost in &mut self.costs[..self.count] {
+            if *cost > most {
+                *cost = f64::INFINITY;
+            }
+        }
     }
 
     fn cheapest(&self) -> usize {

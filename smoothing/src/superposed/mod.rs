@@ -164,7 +164,8 @@ impl<const N: usize> Superposer<N> {
             distance: curve.length(),
             leg: legs.len() - 1,
         };
-        controls.extend([begin; 2]);
+        // Three equal control points are a rest, and sharpening moves the neighbour of a moving one.
+        controls.extend([begin; 3]);
         let mut near = 0;
         let complete = pace.progress(filter.step, |distance| {
             near = curve.leg_at(distance, near);
@@ -178,7 +179,7 @@ impl<const N: usize> Superposer<N> {
         if !complete {
             return false;
         }
-        controls.extend([end; 3]);
+        controls.extend([end; 4]);
         if filter.sharpening > 0.0 {
             let share = filter.sharpening / 6.0;
             let mut before = controls[0].point;

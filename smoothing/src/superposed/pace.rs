@@ -78,6 +78,7 @@ impl Pace {
         filter: &Filter,
     ) -> bool {
         self.places.clear();
+        self.holds.clear();
         let mut trial = Trial {
             curve,
             limits,
@@ -145,7 +146,6 @@ impl Pace {
     /// Plans the progress from rest to rest; gives the distance at each multiple of `step`, until the
     /// end is reached. `false` when `take` has had enough.
     pub(super) fn progress(&mut self, step: f64, mut take: impl FnMut(f64) -> bool) -> bool {
-        self.holds.clear();
         for _ in 0..ROUNDS {
             self.link();
             if !self.hold_back(step) {
@@ -183,30 +183,29 @@ impl Pace {
         true
     }
 
-    /// Finds in each link the place that the progress passes too fast by most, and holds it there;
-    /// `false` when there is none.
+    /// Finds the places that the progress passes too fast, of each run of them the worst, and holds it
+    /// there; `false` when there is none.
     fn hold_back(&mut self, step: f64) -> bool {
         let mut more = std::mem::take(&mut self.more_holds);
         more.clear();
         let mut place = 0;
-        let mut worst = (EXCESS, None);
+        let mut worst: Option<(f64, usize)> = None;
         let mut current = 0;
         self.walk(0.5 * step, |distance, speed, link| {
-            if link != current {
-                more.extend(worst.1);
-                worst = (EXCESS, None);
-                current = link;
-            }
             while place + 1 < self.places.len() && self.places[place].end < distance {
                 place += 1;
             }
             let excess = speed / self.places[place].limits.velocity;
-            if excess > worst.0 {
-                worst = (excess, Some(place));
+            if excess <= EXCESS || link != current {
+                more.extend(worst.take().map(|(_, place)| place));
+                current = link;
+            }
+            if excess > worst.map_or(EXCESS, |(most, _)| most) {
+                worst = Some((excess, place));
             }
             true
         });
-        more.extend(worst.1);
+        more.extend(worst.map(|(_, place)| place));
         let before = self.holds.len();
         for &place in &more {
             for hold in [place, place + 1] {

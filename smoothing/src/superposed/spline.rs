@@ -131,13 +131,8 @@ impl<const N: usize> Spline<N> {
             let first = curve.leg_at(begin, b.leg);
             let last = curve.leg_at(begin + advance, b.leg);
             for leg in &curve.legs()[first..last] {
-                // Along the path the nearest point may lie beside the part: allow for the lag.
-                let near = distance_to(&leg.end, &points[0], &points[3]);
-                if near > lag && near - lag + flat > room {
-                    return false;
-                }
-                let across = self.nearest(index, &leg.end);
-                if across > room {
+                let beside = distance_to(&leg.end, &points[0], &points[3]) + flat;
+                if beside > room && self.nearest(index, &leg.end) > room {
                     return false;
                 }
             }
