@@ -9,7 +9,7 @@ use super::curve::Curve;
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use toolglide_kinematics::{Limits, Tangential, Vector, largest_multiple};
-use toolglide_profiles::{Connection, Feed, Profile};
+use toolglide_profiles::{Connection, Feed, State};
 
 /// Share of the acceleration that curvature may use.
 const CURVATURE_ACCELERATION: f64 = 0.85;
@@ -23,8 +23,10 @@ const LADDER: f64 = 0.95;
 const LOWEST: f64 = 0.01;
 /// How much faster than a place allows the progress may be before it is held back there.
 const EXCESS: f64 = 1.01;
+/// Places whose speeds lie within this ratio are held as one.
+const ALIKE: f64 = 0.9;
 /// Rounds of holding the progress back.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 12;
 /// Share of the limits that changes of speed may use at the least.
 const LEAST_REST: f64 = 0.35;
 /// Most places on one stretch.
@@ -52,7 +54,7 @@ pub(super) struct Pace {
     places: Vec<Place>,
     /// Places at whose beginning the progress is held, without acceleration.
     holds: Vec<usize>,
-    more_holds: Vec<usize>,
+    runs: Vec<(usize, usize)>,
     window: Window,
     links: Vec<Link>,
     turns: Vec<TurnShape>,
@@ -63,7 +65,7 @@ impl Pace {
         Self {
             places: Vec::with_capacity(MOST_PLACES + 1),
             holds: Vec::with_capacity(MOST_PLACES + 1),
-            more_holds: Vec::with_capacity(MOST_PLACES + 1),
+            runs: Vec::with_capacity(MOST_PLACES + 1),
             window: Window::new(MOST_PLACES, false),
             links: Vec::with_capacity(MOST_PLACES + 1),
             turns: Vec::with_capacity(MOST_PLACES + 1),
@@ -168,53 +170,63 @@ impl Pace {
             let Ok(feed) = Feed::over(link.length, &connection) else {
                 return false;
             };
-            let end = time + feed.duration();
-            while tick * step < end {
-                let state = feed.at(tick * step - time);
-                if !take(begin + state.position, state.velocity, index) {
-                    return false;
+            let mut state = State::moving(from, 0.0);
+            for phase in feed.phases() {
+                state.jerk = phase.jerk;
+                let end = time + phase.duration;
+                while tick * step < end {
+                    let now = state.after(tick * step - time);
+                    if !take(begin + now.position, now.velocity, index) {
+                        return false;
+                    }
+                    tick += 1.0;
                 }
-                tick += 1.0;
+                state = state.after(phase.duration);
+                time = end;
             }
             begin += link.length;
-            time = end;
             from = to;
         }
         true
     }
 
-    /// Finds the places that the progress passes too fast, of each run of them the worst, and holds it
-    /// there; `false` when there is none.
+    /// Finds runs of places that the progress passes too fast, and holds it where the slowest places
+    /// of each begin and end; `false` when there is none.
     fn hold_back(&mut self, step: f64) -> bool {
-        let mut more = std::mem::take(&mut self.more_holds);
-        more.clear();
+        let mut runs = std::mem::take(&mut self.runs);
+        runs.clear();
         let mut place = 0;
-        let mut worst: Option<(f64, usize)> = None;
+        let mut run: Option<(usize, usize)> = None;
         let mut current = 0;
-        self.walk(0.5 * step, |distance, speed, link| {
+        self.walk(step, |distance, speed, link| {
             while place + 1 < self.places.len() && self.places[place].end < distance {
                 place += 1;
             }
-            let excess = speed / self.places[place].limits.velocity;
-            if excess <= EXCESS || link != current {
-                more.extend(worst.take().map(|(_, place)| place));
+            let exceeds = speed > EXCESS * self.places[place].limits.velocity;
+            if !exceeds || link != current {
+                runs.extend(run.take());
                 current = link;
             }
-            if excess > worst.map_or(EXCESS, |(most, _)| most) {
-                worst = Some((excess, place));
+            if exceeds {
+                run = Some((run.map_or(place, |(first, _)| first), place));
             }
             true
         });
-        more.extend(worst.map(|(_, place)| place));
+        runs.extend(run);
         let before = self.holds.len();
-        for &place in &more {
-            for hold in [place, place + 1] {
+        for &(first, last) in &runs {
+            let speed = |place: usize| self.places[place].limits.velocity;
+            let slowest = (first..=last).map(speed).fold(f64::INFINITY, f64::min);
+            let alike = |place: &usize| speed(*place) * ALIKE <= slowest;
+            let begin = (first..=last).find(alike).unwrap_or(first);
+            let end = (first..=last).rev().find(alike).unwrap_or(last) + 1;
+            for hold in [begin, end] {
                 if hold > 0 && hold < self.places.len() {
                     self.holds.push(hold);
                 }
             }
         }
-        self.more_holds = more;
+        self.runs = runs;
         self.holds.sort_unstable();
         self.holds.dedup();
         self.holds.len() > before
@@ -234,10 +246,15 @@ impl Pace {
                 continue;
             };
             let mut limits = one.limits;
+            let mut slowest = limits.velocity;
             for place in group {
                 limits.velocity = limits.velocity.max(place.limits.velocity);
+                slowest = slowest.min(place.limits.velocity);
                 limits.acceleration = limits.acceleration.min(place.limits.acceleration);
                 limits.jerk = limits.jerk.min(place.limits.jerk);
+            }
+            if slowest >= ALIKE * limits.velocity {
+                limits.velocity = slowest;
             }
             let link = Link {
                 length: last.end - start,
