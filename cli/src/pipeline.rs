@@ -12,7 +12,7 @@ use crate::travel::{OnAxes, Travel};
 use std::io::BufRead;
 use std::time::{Duration, Instant};
 use toolglide_kinematics::verify::{Judge, Report};
-use toolglide_kinematics::{MotionPlanner, Move};
+use toolglide_kinematics::{MotionPlanner, Move, Piece};
 use toolglide_program::Program;
 
 /// Moves that are read before any of them is planned.
@@ -88,6 +88,7 @@ where
         let mut batch = Vec::with_capacity(MOVES);
         let mut pieces = Vec::with_capacity(PIECES);
         let mut planning_time = Duration::ZERO;
+        let mut progress = Progress::default();
         loop {
             let more = self.moves.fill(&mut batch)?;
             for next in &batch {
@@ -104,7 +105,7 @@ where
             let mut open = true;
             while open {
                 let begin = Instant::now();
-                open = self.plan(&mut waiting, !more, &mut pieces)?;
+                open = self.plan(&mut waiting, &mut progress, !more, &mut pieces)?;
                 planning_time += begin.elapsed();
                 for piece in pieces.drain(..) {
                     self.judge.observe(&piece);
@@ -132,30 +133,39 @@ where
     fn plan(
         &mut self,
         waiting: &mut std::slice::Iter<'_, Move<N>>,
+        progress: &mut Progress,
         last: bool,
-        pieces: &mut Vec<toolglide_kinematics::Piece<N>>,
+        pieces: &mut Vec<Piece<N>>,
     ) -> Result<bool, CliError> {
-        let mut finished = false;
         while pieces.len() < PIECES {
             if let Some(piece) = self.planner.pull() {
                 pieces.push(piece);
-            } else if let Some(next) = waiting.next() {
-                self.planner.push(next).map_err(|reason| CliError::Plan {
-                    program: self.moves.name.clone(),
-                    line: next.line(),
-                    reason,
-                })?;
-            } else if last && !finished {
-                finished = true;
-                self.planner.finish().map_err(|reason| CliError::Plan {
-                    program: self.moves.name.clone(),
-                    line: 0,
-                    reason,
-                })?;
+                continue;
+            }
+            let outcome = if let Some(next) = waiting.next() {
+                progress.line = next.line();
+                self.planner.push(next)
+            } else if last && !progress.finished {
+                progress.finished = true;
+                self.planner.finish()
             } else {
                 return Ok(false);
-            }
+            };
+            outcome.map_err(|reason| CliError::Plan {
+                program: self.moves.name.clone(),
+                line: progress.line,
+                reason,
+            })?;
         }
         Ok(true)
     }
+}
+
+/// How far a planner was told to go.
+#[derive(Clone, Copy, Debug, Default)]
+struct Progress {
+    /// Line of the last move that it was given.
+    line: u32,
+    /// Whether it knows that no move follows.
+    finished: bool,
 }

@@ -274,3 +274,17 @@ fn machines_are_listed_described_and_their_files_have_a_schema() {
         unknown.err
     );
 }
+
+#[test]
+fn a_motion_of_many_pieces_from_one_move_is_complete() {
+    let folder = Folder::new();
+    // One arc of thousands of chords, which all come out when the program is over.
+    let program = folder.write("part.ngc", "G64 P0.0004\nG2 X0 Y0 I100 F60000\n");
+    let run = toolglide(&["plan", &program, "--json", "--method", "exact-stop"]);
+    let summary = json(&run.out);
+    assert!(run.code <= 1, "{}", run.err);
+    let length = 200.0 * std::f64::consts::PI;
+    let planned = summary["path_length_mm"].as_f64().unwrap();
+    assert!((planned - length).abs() < 1e-6, "{planned}");
+    assert!(!run.err.contains("end"), "it comes to its end: {}", run.err);
+}

@@ -26,7 +26,7 @@ const MOST_PIECES: usize = 4096;
 const SHARPER: f64 = 0.01;
 
 /// Turns beyond this count less and less, rad: a reversal shows nothing but a line.
-const NEARLY_REVERSAL: f64 = 170.0 * std::f64::consts::PI / 180.0;
+const NEARLY_REVERSAL: f64 = 160.0 * std::f64::consts::PI / 180.0;
 
 /// A corner at which the motion stops anyway counts this share.
 const STOP_SHARE: f64 = 0.01;
@@ -53,6 +53,14 @@ pub(crate) struct SharpCorner<const N: usize> {
     index: u32,
     rank: f64,
     missing: usize,
+}
+
+impl<const N: usize> SharpCorner<N> {
+    /// Whether a piece serves one of the two moves that meet here.
+    pub(crate) fn is_served_by(&self, piece: &Piece<N>) -> bool {
+        let serves = piece.serves();
+        serves.first <= self.index && serves.last.saturating_add(1) >= self.index
+    }
 }
 
 /// Looks for the sharpest corner.

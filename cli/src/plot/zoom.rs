@@ -89,16 +89,18 @@ pub(crate) fn draw<const N: usize>(
         &through(corner.path.iter().map(|&point| on_chart(point))),
         &style,
     );
-    let motion: Vec<Vector<N>> = motion(corner).collect();
+    let motion: Vec<(Vector<N>, bool)> = motion(corner).collect();
     let style = format!(
         "fill=\"none\" stroke=\"{}\" stroke-width=\"2.6\" stroke-linejoin=\"round\"",
         color::MOTION
     );
     canvas.path(
-        &through(motion.iter().map(|&point| on_chart(point))),
+        &through(motion.iter().map(|&(point, _)| on_chart(point))),
         &style,
     );
-    let nearest = motion.iter().copied().min_by(|one, two| {
+    // The motion may come by again later; what counts is how it turns here.
+    let turning = motion.iter().filter(|point| point.1);
+    let nearest = turning.map(|point| point.0).min_by(|one, two| {
         let distance = |point: &Vector<N>| (point - corner.point).norm();
         distance(one).total_cmp(&distance(two))
     });
@@ -140,15 +142,18 @@ pub(crate) fn draw<const N: usize>(
     chart.draw_name_across(canvas, &name);
 }
 
-/// Points of the motion, close enough to look like a curve where the window is.
-fn motion<const N: usize>(corner: &SharpCorner<N>) -> impl Iterator<Item = Vector<N>> + '_ {
+/// Points of the motion, close enough to look like a curve where the window is, and whether they
+/// belong to the two moves that meet.
+fn motion<const N: usize>(corner: &SharpCorner<N>) -> impl Iterator<Item = (Vector<N>, bool)> + '_ {
     let near = 4.0 * WINDOW * corner.tolerance.length();
     corner.pieces.iter().flat_map(move |piece| {
         let length = (piece.end() - piece.start()).norm();
         let close = (piece.start() - corner.point).norm() < near + length;
         let points = if close { POINTS } else { 1 };
+        let turning = corner.is_served_by(piece);
         (0..=points).map(move |step| {
-            piece.position_at(piece.duration() * f64::from(step) / f64::from(points))
+            let share = f64::from(step) / f64::from(points);
+            (piece.position_at(piece.duration() * share), turning)
         })
     })
 }
