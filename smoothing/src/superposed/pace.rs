@@ -8,6 +8,7 @@
 use super::curve::Curve;
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
+use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, Tangential, Vector, largest_multiple};
 use toolglide_profiles::{Connection, Feed, State};
 
@@ -25,6 +26,8 @@ const LOWEST: f64 = 0.01;
 const EXCESS: f64 = 1.01;
 /// Places whose speeds lie within this ratio are held as one.
 const ALIKE: f64 = 0.9;
+/// Places whose speeds lie within this ratio are travelled at the slowest of them.
+const SAME: f64 = 0.99;
 /// Rounds of holding the progress back.
 const ROUNDS: usize = 12;
 /// Share of the limits that changes of speed may use at the least.
@@ -89,7 +92,8 @@ impl Pace {
         };
         let mut last_speed = f64::INFINITY;
         for (index, leg) in curve.legs().iter().enumerate() {
-            let feedrate = leg.limits.velocity;
+            // A hair below, because the spline is judged at the feedrate itself.
+            let feedrate = leg.limits.velocity * (1.0 - 4.0 * LIMIT_SLACK);
             let spacing = 0.5 * feedrate * filter.step;
             let begin = curve.mark(index);
             let pieces = (leg.length / spacing).ceil().max(1.0);
@@ -109,7 +113,10 @@ impl Pace {
                 };
                 let limits = if straight {
                     last_speed = feedrate;
-                    leg.limits
+                    Tangential {
+                        velocity: feedrate,
+                        ..leg.limits
+                    }
                 } else {
                     let start = self.places.last().map_or(0.0, |place: &Place| place.end);
                     trial.near = index;
@@ -253,7 +260,7 @@ impl Pace {
                 limits.acceleration = limits.acceleration.min(place.limits.acceleration);
                 limits.jerk = limits.jerk.min(place.limits.jerk);
             }
-            if slowest >= ALIKE * limits.velocity {
+            if slowest >= SAME * limits.velocity {
                 limits.velocity = slowest;
             }
             let link = Link {
@@ -305,7 +312,7 @@ impl<const N: usize> Trial<'_, N> {
             while speed < feedrate {
                 let faster = (speed / LADDER).min(feedrate);
                 let Some(better) = try_at(faster) else {
-                    break;
+                    return try_at(0.5 * (speed + faster)).unwrap_or(found);
                 };
                 found = better;
                 speed = faster;
@@ -315,7 +322,7 @@ impl<const N: usize> Trial<'_, N> {
         loop {
             speed *= LADDER;
             if let Some(found) = try_at(speed) {
-                return found;
+                return try_at(0.5 * speed * (1.0 + 1.0 / LADDER)).unwrap_or(found);
             }
             if speed < LOWEST * feedrate {
                 let [second, third] = self.differences(distance, speed);
