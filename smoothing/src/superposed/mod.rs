@@ -27,11 +27,14 @@ const MOST_STEPS: usize = 16_384;
 /// Rounds of slowing down where a limit or the tolerance is exceeded.
 const ROUNDS: usize = 12;
 
-/// What a place is slowed by in one round.
-const SLOWER: f64 = 0.93;
+/// What a place is slowed by in one round beyond what its excess asks for.
+const SLOWER: f64 = 0.995;
+
+/// The most that a place is slowed by in one round.
+const SLOWEST: f64 = 0.85;
 
 /// Time steps tried, as shares of the time in which the jerk changes the speed by the feedrate.
-const STEPS: [f64; 2] = [0.2, 0.4];
+const STEPS: [f64; 3] = [0.1, 0.2, 0.4];
 
 /// Plans stretches of superposed corners.
 #[derive(Clone, Debug)]
@@ -119,16 +122,19 @@ impl<const N: usize> Superposer<N> {
             }
             let mut kept = true;
             for index in 0..self.spline.pieces() {
-                if !self.spline.keeps(index, &self.curve, &self.limits) {
+                let factor = self.spline.keeps(index, &self.curve, &self.limits);
+                if factor < 1.0 {
                     kept = false;
                     let controls = &self.spline.controls[index..index + 4];
+                    let factor = (factor * SLOWER).max(SLOWEST);
                     self.pace
-                        .slow(controls[0].distance, controls[3].distance, SLOWER);
+                        .slow(controls[0].distance, controls[3].distance, factor);
                 }
             }
             if kept {
                 return true;
             }
+            self.pace.settle();
         }
         false
     }

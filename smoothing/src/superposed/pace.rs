@@ -49,6 +49,8 @@ pub(super) struct Filter {
 struct Place {
     end: f64,
     limits: Tangential,
+    /// What it must be slowed by next.
+    slower: f64,
 }
 
 /// Speeds along a stretch.
@@ -127,28 +129,40 @@ impl Pace {
                 if self.places.len() >= MOST_PLACES {
                     return false;
                 }
-                self.places.push(Place { end, limits });
+                self.places.push(Place {
+                    end,
+                    limits,
+                    slower: 1.0,
+                });
             }
         }
         true
     }
 
-    /// Slows the places around a distance.
+    /// Notes that the places around a distance must be slowed.
     pub(super) fn slow(&mut self, from: f64, to: f64, factor: f64) {
         let first = self.places.partition_point(|place| place.end < from);
-        for index in first..self.places.len() {
-            let start = if index > 0 {
-                self.places[index - 1].end
-            } else {
-                0.0
-            };
+        let mut start = if first > 0 {
+            self.places[first - 1].end
+        } else {
+            0.0
+        };
+        for place in &mut self.places[first..] {
             if start > to {
                 break;
             }
-            let limits = &mut self.places[index].limits;
-            limits.velocity *= factor;
-            limits.acceleration *= factor * factor;
-            limits.jerk *= factor;
+            start = place.end;
+            place.slower = place.slower.min(factor);
+        }
+    }
+
+    /// Slows the places that were noted, each by the most that was asked of it.
+    pub(super) fn settle(&mut self) {
+        for place in &mut self.places {
+            let factor = std::mem::replace(&mut place.slower, 1.0);
+            place.limits.velocity *= factor;
+            place.limits.acceleration *= factor * factor;
+            place.limits.jerk *= factor * factor * factor;
         }
     }
 

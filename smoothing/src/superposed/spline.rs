@@ -7,7 +7,7 @@
 
 use super::curve::{Curve, distance_to};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
-use toolglide_kinematics::{Limits, Piece, Sample, Vector};
+use toolglide_kinematics::{Limits, Piece, Sample, Vector, largest_multiple};
 
 /// Parts into which a piece is cut where its Bezier points are compared with the path: at first, and
 /// where that is not sharp enough.
@@ -60,48 +60,58 @@ impl<const N: usize> Spline<N> {
         [0, 1, 2, 3].map(|offset| &self.controls[index + offset])
     }
 
-    /// Whether a piece keeps all limits and the tolerance, at every instant of it.
-    pub(super) fn keeps(&self, index: usize, curve: &Curve<N>, limits: &Limits<N>) -> bool {
+    /// How much slower a piece would have to be to keep all limits and the tolerance at every instant
+    /// of it: 1 when it keeps them, else an estimate below 1.
+    pub(super) fn keeps(&self, index: usize, curve: &Curve<N>, limits: &Limits<N>) -> f64 {
         let step = self.step;
         let [a, b, c, d] = self.four(index);
         let feedrate = curve.legs()[a.leg..=d.leg]
             .iter()
             .fold(f64::INFINITY, |least, leg| least.min(leg.limits.velocity));
         let [a, b, c, d] = [a.point, b.point, c.point, d.point];
-        let second = c - b * 2.0 + a;
-        let third = d - c * 3.0 + b * 3.0 - a;
         let slack = 1.0 - LIMIT_SLACK;
-        for axis in 0..N {
-            let kept = second[axis].abs() <= slack * limits.acceleration()[axis] * step * step
-                && third[axis].abs() <= slack * limits.jerk()[axis] * step.powi(3);
-            if !kept {
-                return false;
+        let accelerations = [c - b * 2.0 + a, d - c * 2.0 + b]
+            .map(|second| largest_multiple(&second, limits.acceleration()) * slack * step * step);
+        let jerk =
+            largest_multiple(&(d - c * 3.0 + b * 3.0 - a), limits.jerk()) * slack * step.powi(3);
+        // The velocity is a quadratic; its Bezier points, cut in two, bound the speed.
+        let [first, middle, last] = [(c - a) * 0.5, c - b, (d - b) * 0.5];
+        let speed = [
+            first,
+            (first + middle) * 0.5,
+            (first + middle * 2.0 + last) * 0.25,
+            (middle + last) * 0.5,
+            last,
+        ]
+        .iter()
+        .fold(0.0_f64, |most, velocity| most.max(velocity.norm()));
+        let mut kept = (feedrate * slack * step / speed.max(f64::MIN_POSITIVE)).min(1.0);
+        for acceleration in accelerations {
+            kept = kept.min(acceleration.sqrt());
+        }
+        kept = kept.min(jerk.cbrt());
+        if kept < 1.0 {
+            return kept;
+        }
+        let mut nearness = 0.0_f64;
+        for parts in PARTS {
+            nearness = nearness.max(self.nearness(index, curve, parts));
+            if nearness >= 1.0 {
+                return 1.0;
             }
         }
-        let next_second = d - c * 2.0 + b;
-        for axis in 0..N {
-            if next_second[axis].abs() > slack * limits.acceleration()[axis] * step * step {
-                return false;
-            }
-        }
-        for hop in [b - a, c - b, d - c] {
-            if hop.norm() > slack * feedrate * step {
-                return false;
-            }
-        }
-        PARTS
-            .iter()
-            .any(|&parts| self.stays_near(index, curve, parts))
+        nearness.sqrt()
     }
 
-    /// Whether the motion stays within the tolerance of the path, and the path of the motion, judged
-    /// on parts of a piece.
+    /// The tolerance by the distance between motion and path, bounded on parts of a piece; at least 1
+    /// when the motion stays within the tolerance of the path, and the path of the motion.
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
-    fn stays_near(&self, index: usize, curve: &Curve<N>, parts: usize) -> bool {
+    fn nearness(&self, index: usize, curve: &Curve<N>, parts: usize) -> f64 {
         let [a, b, c, d] = self.four(index);
         let room = curve.legs()[a.leg..=d.leg]
             .iter()
             .fold(f64::INFINITY, |least, leg| least.min(leg.room().length()));
+        let mut furthest = 0.0_f64;
         let mut rest = [
             (a.point + b.point * 4.0 + c.point) / 6.0,
             (b.point * 2.0 + c.point) / 3.0,
@@ -122,9 +132,7 @@ impl<const N: usize> Spline<N> {
             let off = points
                 .iter()
                 .fold(0.0_f64, |most, point| most.max(span.distance(point)));
-            if off + span.deviation > room {
-                return false;
-            }
+            furthest = furthest.max(off + span.deviation);
             // Each corner of the path beside this part must be near it.
             let flat = distance_to(&points[1], &points[0], &points[3])
                 .max(distance_to(&points[2], &points[0], &points[3]));
@@ -132,12 +140,12 @@ impl<const N: usize> Spline<N> {
             let last = curve.leg_at(begin + advance, b.leg);
             for leg in &curve.legs()[first..last] {
                 let beside = distance_to(&leg.end, &points[0], &points[3]) + flat;
-                if beside > room && self.nearest(index, &leg.end) > room {
-                    return false;
+                if beside > room {
+                    furthest = furthest.max(self.nearest(index, &leg.end));
                 }
             }
         }
-        true
+        room / furthest.max(f64::MIN_POSITIVE)
     }
 
     /// Least distance from a point to the motion around a piece, found on chords and so an upper
