@@ -35,7 +35,8 @@ pub(crate) struct Corners<const N: usize> {
 }
 
 impl<const N: usize> Corners<N> {
-    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+    /// A planner that takes `burst` legs without being pulled before it allocates.
+    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>, burst: usize) -> Self {
         let size = settings.window.max(1);
         let selections = Selection::of(settings);
         let windows: Vec<_> = selections
@@ -47,13 +48,13 @@ impl<const N: usize> Corners<N> {
             pending: None,
             scaled: windows
                 .iter()
-                .map(|_| VecDeque::with_capacity(2 * size + 4))
+                .map(|_| VecDeque::with_capacity(burst + 2 * size + 4))
                 .collect(),
             windows,
             selections,
             stops_allowed: matches!(settings.method, Method::Kcs | Method::ExactStop),
-            lattice: Lattice::new(size),
-            legs: VecDeque::with_capacity(3 * size + 8),
+            lattice: Lattice::new(size, burst),
+            legs: VecDeque::with_capacity(burst + 3 * size + 8),
             offered: 0,
             from: TurnShape::STOP,
             pieces: VecDeque::with_capacity(MOST_PIECES + 1),

@@ -42,11 +42,12 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     /// A lattice that holds `size` corners at the most and begins at rest.
-    pub(crate) fn new(size: usize) -> Self {
+    /// After `burst` corners that nobody has pulled it allocates.
+    pub(crate) fn new(size: usize, burst: usize) -> Self {
         let size = size.max(1);
         let mut lattice = Self {
             columns: VecDeque::with_capacity(size + 2),
-            chosen: VecDeque::with_capacity(size + 2),
+            chosen: VecDeque::with_capacity(burst + size + 2),
             way: Vec::with_capacity(size + 2),
             size,
             wait: 0,

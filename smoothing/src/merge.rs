@@ -36,6 +36,8 @@ pub(crate) struct Merger<const N: usize> {
     run: Vec<Vertex<N>>,
     /// Largest distance of the run from its line.
     deviation: f64,
+    /// Largest feedrate of the run.
+    fastest: f64,
     carried: Option<Carried<N>>,
 }
 
@@ -58,6 +60,7 @@ impl<const N: usize> Merger<N> {
             anchor: start,
             run: Vec::with_capacity(MOST_MERGED + 1),
             deviation: 0.0,
+            fastest: 0.0,
             carried: None,
         }
     }
@@ -67,6 +70,7 @@ impl<const N: usize> Merger<N> {
         self.anchor = start;
         self.run.clear();
         self.deviation = 0.0;
+        self.fastest = 0.0;
         self.carried = None;
     }
 
@@ -88,6 +92,7 @@ impl<const N: usize> Merger<N> {
                 self.deviation = vertex.bulge;
             }
         }
+        self.fastest = self.fastest.max(vertex.feedrate);
         self.run.push(vertex);
         leg
     }
@@ -113,6 +118,7 @@ impl<const N: usize> Merger<N> {
         }
         self.run.clear();
         self.deviation = 0.0;
+        self.fastest = 0.0;
         if length <= SHORTEST_LENGTH {
             self.carry(serves, deviation, last.point);
             return None;
@@ -165,6 +171,29 @@ impl<const N: usize> Merger<N> {
         self.carried = Some(carried);
     }
 
+    /// Length of the moves that would be slowed to the feedrate of another if `vertex` were merged.
+    fn hurried_with(&self, vertex: &Vertex<N>, before: &Vertex<N>) -> f64 {
+        let feedrate = self
+            .run
+            .iter()
+            .fold(vertex.feedrate, |least, member| least.min(member.feedrate));
+        if feedrate >= vertex.feedrate && feedrate >= self.fastest {
+            return 0.0;
+        }
+        let mut hurried = 0.0;
+        let mut from = self.anchor;
+        for member in &self.run {
+            if member.feedrate > feedrate {
+                hurried += (member.point - from).norm();
+            }
+            from = member.point;
+        }
+        if vertex.feedrate > feedrate {
+            hurried += (vertex.point - before.point).norm();
+        }
+        hurried
+    }
+
     /// Largest distance of the run from a line to `vertex`, or `None` when it cannot be merged.
     fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
         let Some(before) = self.run.last() else {
@@ -177,13 +206,9 @@ impl<const N: usize> Merger<N> {
             least.min(member.tolerance)
         });
         let budget = self.share * tolerance.length();
-        if before.feedrate.to_bits() != vertex.feedrate.to_bits() {
-            let shorter = (vertex.point - before.point)
-                .norm()
-                .min((before.point - self.anchor).norm());
-            if shorter > budget {
-                return None;
-            }
+        let hurried = self.hurried_with(vertex, before);
+        if hurried > budget {
+            return None;
         }
         let bulge = self
             .run

@@ -60,7 +60,7 @@ impl<const N: usize> KinematicSmoothing<N> {
                 Method::Kcs | Method::ExactStop => {
                     Route::Stretches(Box::new(Stretches::new(start, settings)))
                 }
-                _ => Route::Corners(Box::new(Corners::new(start, settings))),
+                _ => Route::Corners(Box::new(Corners::new(start, settings, 1))),
             },
         }
     }

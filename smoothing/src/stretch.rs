@@ -38,9 +38,19 @@ pub(crate) struct Stretches<const N: usize> {
     corners: Corners<N>,
     trial: Corners<N>,
     superposer: Superposer<N>,
-    /// Motion that was finished before it was asked for.
-    ready: VecDeque<Piece<N>>,
+    /// Where the stretch under way with superposed corners ends.
     end: Vector<N>,
+    /// What waits until a stretch with superposed corners has been pulled.
+    events: VecDeque<Event<N>>,
+}
+
+/// What comes from the path, in order.
+#[derive(Clone, Copy, Debug)]
+enum Event<const N: usize> {
+    Leg(Leg<N>),
+    Rest,
+    Dwell(Dwell<N>),
+    Close,
 }
 
 impl<const N: usize> Stretches<N> {
@@ -49,28 +59,27 @@ impl<const N: usize> Stretches<N> {
             merger: Merger::new(start, settings.limits, FINE_SHARE),
             legs: Vec::with_capacity(MOST_LEGS),
             from_rest: true,
-            corners: Corners::new(start, settings),
-            trial: Corners::new(start, settings),
+            corners: Corners::new(start, settings, MOST_LEGS),
+            trial: Corners::new(start, settings, MOST_LEGS),
             superposer: Superposer::new(settings.limits),
-            ready: VecDeque::new(),
             end: start,
+            events: VecDeque::with_capacity(8),
         }
     }
 
     /// Takes the next vertex.
     pub(crate) fn push(&mut self, vertex: Vertex<N>) {
         if let Some(leg) = self.merger.push(vertex) {
-            self.take_leg(leg);
+            self.take(Event::Leg(leg));
         }
     }
 
     /// The motion must rest where the path has come to.
     pub(crate) fn rest(&mut self) {
         if let Some(leg) = self.merger.flush() {
-            self.take_leg(leg);
+            self.take(Event::Leg(leg));
         }
-        self.settle(true);
-        self.corners.rest();
+        self.take(Event::Rest);
     }
 
     /// The motion must pause where the path has come to.
@@ -80,34 +89,53 @@ impl<const N: usize> Stretches<N> {
             Some(carried) => carried.then(pause),
             None => pause,
         };
-        self.drain();
-        self.corners.dwell(pause);
+        self.take(Event::Dwell(pause));
     }
 
     /// The path ends.
     pub(crate) fn close(&mut self) {
         self.rest();
         if let Some(carried) = self.merger.take_carried() {
-            self.drain();
-            self.corners.dwell(carried);
+            self.take(Event::Dwell(carried));
         }
-        self.corners.close();
+        self.take(Event::Close);
     }
 
     /// The next piece of finished motion.
     pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
-        if let Some(piece) = self.ready.pop_front() {
+        if let Some(piece) = self.corners.pull() {
             return Some(piece);
         }
+        // The corners before a stretch have been closed, and begin again at rest after it.
+        let piece = self.superposer.pull()?;
         if self.superposer.is_done() {
-            return self.corners.pull();
+            self.corners.restart(self.end);
+            self.work();
         }
-        // The corners before the stretch have been closed.
-        let piece = self.corners.pull().or_else(|| self.superposer.pull());
-        if self.superposer.is_done() {
-            self.resume();
+        Some(piece)
+    }
+
+    fn take(&mut self, event: Event<N>) {
+        self.events.push_back(event);
+        self.work();
+    }
+
+    /// Works off what has come, up to the next stretch with superposed corners.
+    fn work(&mut self) {
+        while self.superposer.is_done()
+            && let Some(event) = self.events.pop_front()
+        {
+            match event {
+                Event::Leg(leg) => self.take_leg(leg),
+                Event::Rest if self.legs.is_empty() => self.corners.rest(),
+                Event::Rest => {
+                    self.settle(true);
+                    self.events.push_front(Event::Rest);
+                }
+                Event::Dwell(pause) => self.corners.dwell(pause),
+                Event::Close => self.corners.close(),
+            }
         }
-        piece
     }
 
     fn take_leg(&mut self, leg: Leg<N>) {
@@ -115,6 +143,10 @@ impl<const N: usize> Stretches<N> {
             let half_sine = 0.5 * (leg.direction - last.direction).norm();
             if half_sine > SHARP || self.legs.len() >= MOST_LEGS {
                 self.settle(false);
+                if !self.superposer.is_done() {
+                    self.events.push_front(Event::Leg(leg));
+                    return;
+                }
             }
         }
         self.legs.push(leg);
@@ -128,7 +160,6 @@ impl<const N: usize> Stretches<N> {
             return;
         };
         let end = last.end;
-        self.drain();
         if self.legs.len() >= FEWEST_LEGS && self.superpose(from_rest, to_rest) {
             self.corners.close();
             self.end = end;
@@ -158,7 +189,7 @@ impl<const N: usize> Stretches<N> {
             return false;
         }
         self.superposer
-            .plan(&self.legs, by_corners - penalty)
+            .plan(&self.legs, at_feedrate, by_corners - penalty)
             .is_some()
     }
 
@@ -180,26 +211,6 @@ impl<const N: usize> Stretches<N> {
             duration += piece.duration();
         }
         duration
-    }
-
-    /// Makes room for another stretch: what has not been asked for is kept ready.
-    fn drain(&mut self) {
-        if self.superposer.is_done() {
-            return;
-        }
-        while let Some(piece) = self.corners.pull() {
-            self.ready.push_back(piece);
-        }
-        while let Some(piece) = self.superposer.pull() {
-            self.ready.push_back(piece);
-        }
-        self.resume();
-    }
-
-    /// After a stretch of superposed corners the corners begin again at rest.
-    fn resume(&mut self) {
-        self.superposer.discard();
-        self.corners.restart(self.end);
     }
 }
 

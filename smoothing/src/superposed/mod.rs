@@ -25,7 +25,7 @@ pub(crate) const MOST_LEGS: usize = 4096;
 const MOST_STEPS: usize = 16_384;
 
 /// Rounds of slowing down where a limit or the tolerance is exceeded.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 8;
 
 /// What a place is slowed by in one round beyond what its excess asks for.
 const SLOWER: f64 = 0.995;
@@ -33,8 +33,12 @@ const SLOWER: f64 = 0.995;
 /// The most that a place is slowed by in one round.
 const SLOWEST: f64 = 0.85;
 
-/// Time steps tried, as shares of the time in which the jerk changes the speed by the feedrate.
-const STEPS: [f64; 3] = [0.1, 0.2, 0.4];
+/// Filters tried in this order: the time step, as a share of the time in which the jerk changes the
+/// speed by the feedrate, and the sharpening.
+const FILTERS: [(f64, f64); 3] = [(0.4, 1.0), (0.2, 0.0), (0.1, 0.0)];
+
+/// A plan this near to the least conceivable time is not improved.
+const GOOD_ENOUGH: f64 = 1.02;
 
 /// Plans stretches of superposed corners.
 #[derive(Clone, Debug)]
@@ -65,7 +69,9 @@ impl<const N: usize> Superposer<N> {
 
     /// Plans the legs from rest to rest in less than `most` seconds; the duration, or `None` when that
     /// cannot be done.
-    pub(crate) fn plan(&mut self, legs: &[Leg<N>], most: f64) -> Option<f64> {
+    ///
+    /// `least` is a time that no motion can undercut.
+    pub(crate) fn plan(&mut self, legs: &[Leg<N>], least: f64, most: f64) -> Option<f64> {
         self.curve.set(legs);
         self.best.controls.clear();
         self.next = 0;
@@ -76,16 +82,17 @@ impl<const N: usize> Superposer<N> {
         }
         let ramp = (feedrate / jerk).sqrt();
         let mut shortest = most;
-        for share in STEPS {
-            for sharpening in [0.0, 1.0] {
-                let filter = Filter {
-                    step: share * ramp,
-                    sharpening,
-                };
-                if self.attempt(&filter, shortest) {
-                    shortest = self.spline.duration();
-                    std::mem::swap(&mut self.spline, &mut self.best);
-                }
+        for (share, sharpening) in FILTERS {
+            if shortest <= GOOD_ENOUGH * least {
+                break;
+            }
+            let filter = Filter {
+                step: share * ramp,
+                sharpening,
+            };
+            if self.attempt(&filter, shortest) {
+                shortest = self.spline.duration();
+                std::mem::swap(&mut self.spline, &mut self.best);
             }
         }
         (self.best.pieces() > 0).then(|| self.best.duration())
@@ -104,12 +111,6 @@ impl<const N: usize> Superposer<N> {
     /// Whether all pieces of the stretch have been pulled.
     pub(crate) fn is_done(&self) -> bool {
         self.next >= self.best.pieces()
-    }
-
-    /// Forgets the stretch.
-    pub(crate) fn discard(&mut self) {
-        self.best.controls.clear();
-        self.next = 0;
     }
 
     fn attempt(&mut self, filter: &Filter, most: f64) -> bool {

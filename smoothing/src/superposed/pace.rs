@@ -29,9 +29,11 @@ const ALIKE: f64 = 0.9;
 /// Places whose speeds lie within this ratio are travelled at the slowest of them.
 const SAME: f64 = 0.99;
 /// Rounds of holding the progress back.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 6;
 /// Share of the limits that changes of speed may use at the least.
 const LEAST_REST: f64 = 0.35;
+/// Most instants at which one stretch is looked at.
+const MOST_TICKS: f64 = 20_000.0;
 /// Most places on one stretch.
 pub(super) const MOST_PLACES: usize = 16_384;
 
@@ -196,6 +198,9 @@ impl Pace {
                 state.jerk = phase.jerk;
                 let end = time + phase.duration;
                 while tick * step < end {
+                    if tick > MOST_TICKS {
+                        return false;
+                    }
                     let now = state.after(tick * step - time);
                     if !take(begin + now.position, now.velocity, index) {
                         return false;
