@@ -42,7 +42,10 @@ pub(crate) struct Window {
     /// Link `i` leads from node `i` to node `i + 1`, the last one to what has not been read.
     links: VecDeque<Link>,
     size: usize,
+    /// Nodes that are read between two backward passes, and committed at once when the window is full.
     batch: usize,
+    /// Nodes that are to be committed now.
+    due: usize,
     /// Nodes up to here have an `upper`.
     passed: usize,
     finished: bool,
@@ -60,7 +63,8 @@ impl Window {
             nodes: VecDeque::with_capacity(size + 3),
             links: VecDeque::with_capacity(size + 3),
             size,
-            batch: (size / 8).clamp(1, 16),
+            batch: (size / 4).max(1),
+            due: 0,
             passed: 0,
             finished: false,
             balanced,
@@ -79,6 +83,7 @@ impl Window {
             witness: 0.0,
         });
         self.links.clear();
+        self.due = 0;
         self.passed = 0;
         self.finished = false;
     }
@@ -120,13 +125,17 @@ impl Window {
         if known == 0 {
             return None;
         }
-        let full = known > self.size;
-        if self.passed < known && (full || self.finished || known - self.passed >= self.batch) {
+        if known > self.size {
+            self.due = self.due.max(self.batch);
+        }
+        let fresh = known - self.passed;
+        if fresh > 0 && (self.finished || self.due > 0 || fresh >= self.batch) {
             self.backward();
         }
         let next = self.nodes.get(1).filter(|_| self.passed > 0)?;
         let settled = next.upper >= next.cap * (1.0 - CLOSURE);
-        if settled || self.finished || full {
+        if settled || self.finished || self.due > 0 {
+            self.due = self.due.saturating_sub(1);
             Some(self.commit())
         } else {
             None
@@ -155,7 +164,7 @@ impl Window {
         for index in (1..=known).rev() {
             let node = self.nodes[index];
             let (upper, witness) = reachable(&node, &next, &self.links[index]);
-            if upper > node.upper {
+            if upper > node.upper * (1.0 + SEARCH_PRECISION) {
                 self.nodes[index].upper = upper;
                 self.nodes[index].witness = witness;
             } else if index <= self.passed {
