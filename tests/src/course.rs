@@ -167,7 +167,11 @@ impl<const N: usize> Course<N> {
                     }
                 }
             };
-            let step = if leg.stop { step.with_exact_stop() } else { step };
+            let step = if leg.stop {
+                step.with_exact_stop()
+            } else {
+                step
+            };
             path.push(step.from_line(line)).unwrap();
         }
         path

@@ -11,4 +11,6 @@
 pub mod bounds;
 pub mod corpus;
 pub mod course;
+pub mod run;
 pub mod strategies;
+pub mod stream;

@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestError, TestRunner};
 use std::cell::Cell;
 use toolglide_kinematics::{Plan, Trajectory, verify};
 use toolglide_smoothing::{Method, Settings, plan};
 use toolglide_tests::bounds::{FEWEST_PLANS, NEVER_SLOWER};
 use toolglide_tests::course::{Course, Numbers, limits};
+use toolglide_tests::run::try_all;
 use toolglide_tests::strategies;
 
 /// Windows tried: the shortest that looks ahead, a short one, and the default.
@@ -49,76 +49,65 @@ fn judge<const N: usize>(course: &Course<N>, numbers: &Numbers<N>) -> Result<u32
     Ok(plans)
 }
 
-/// Judges random courses; at least `fewest` plans.
-fn judge_all<const N: usize>(courses: impl Strategy<Value = Course<N>>, cases: u32) {
-    let config = Config {
-        cases: cases.max(cases * Config::default().cases / 256),
-        failure_persistence: None,
-        ..Config::default()
-    };
+/// Judges random courses.
+fn judge_all<const N: usize>(courses: impl Strategy<Value = Course<N>>) {
     let plans = Cell::new(0);
-    let judged = TestRunner::new(config).run(
-        &(courses, strategies::limits::<N>()),
-        |(course, numbers)| {
-            plans.set(plans.get() + judge(&course, &numbers)?);
-            Ok(())
-        },
-    );
-    match judged {
-        Err(TestError::Fail(reason, (course, numbers))) => {
-            panic!("{reason}\nlet course = {course:?};\nlet numbers = {numbers:?};")
-        }
-        Err(abort) => panic!("{abort}"),
-        Ok(()) => {}
-    }
-    assert!(plans.get() >= cases * 12, "{} plans", plans.get());
+    try_all(courses, CASES, |course, numbers| {
+        plans.set(plans.get() + judge(course, numbers)?);
+        Ok(())
+    });
+    assert!(plans.get() >= CASES * PLANS_A_CASE, "{} plans", plans.get());
 }
 
-/// Cases of each kind and number of axes; nine kinds make [`FEWEST_PLANS`].
+/// Cases of each kind of course and number of axes.
 const CASES: u32 = 40;
-const _: () = assert!(CASES * 12 * 9 >= FEWEST_PLANS, "too few plans");
+
+/// Every window with every method.
+const PLANS_A_CASE: u32 = 12;
+
+const _: () = assert!(9 * CASES * PLANS_A_CASE >= FEWEST_PLANS, "too few plans");
 
 #[test]
 fn any_path_in_two_axes_is_planned_within_its_limits() {
-    judge_all(strategies::courses::<2>(), CASES);
+    judge_all(strategies::courses::<2>());
 }
 
 #[test]
 fn any_path_in_three_axes_is_planned_within_its_limits() {
-    judge_all(strategies::courses::<3>(), CASES);
+    judge_all(strategies::courses::<3>());
 }
 
 #[test]
 fn any_path_in_four_axes_is_planned_within_its_limits() {
-    judge_all(strategies::courses::<4>(), CASES);
+    judge_all(strategies::courses::<4>());
 }
 
 #[test]
 fn zigzags_of_two_axes_are_planned_within_their_limits() {
-    judge_all(strategies::zigzags::<2>(), CASES);
+    judge_all(strategies::zigzags::<2>());
 }
 
 #[test]
 fn zigzags_of_three_axes_are_planned_within_their_limits() {
-    judge_all(strategies::zigzags::<3>(), CASES);
+    judge_all(strategies::zigzags::<3>());
 }
 
 #[test]
 fn zigzags_of_four_axes_are_planned_within_their_limits() {
-    judge_all(strategies::zigzags::<4>(), CASES);
+    judge_all(strategies::zigzags::<4>());
 }
 
 #[test]
 fn chords_of_curves_in_two_axes_are_planned_within_their_limits() {
-    judge_all(strategies::curves::<2>(), CASES);
+    judge_all(strategies::curves::<2>());
 }
 
 #[test]
 fn chords_of_curves_in_three_axes_are_planned_within_their_limits() {
-    judge_all(strategies::curves::<3>(), CASES);
+    judge_all(strategies::curves::<3>());
 }
 
 #[test]
 fn chords_of_curves_in_four_axes_are_planned_within_their_limits() {
-    judge_all(strategies::curves::<4>(), CASES);
+    judge_all(strategies::curves::<4>());
 }

@@ -1,0 +1,153 @@
+//! Sampling never allocates, nor does planning after it was constructed.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+use allocation_counter::measure;
+use std::hint::black_box;
+use toolglide_kinematics::{
+    Limits, MotionPlanner, Move, Path, SamplePeriod, Sampler, Toolpath, Vector,
+};
+use toolglide_smoothing::{KinematicSmoothing, Method, Settings, plan};
+use toolglide_tests::course::{Course, Lead, arc, go, stop};
+
+/// Lines, arcs, helices, dwells, stops, repeats and rapids, again and again.
+fn mixed(rounds: u32) -> Toolpath<3> {
+    let mut legs = Vec::new();
+    let mut x = 0.0;
+    for round in 0..rounds {
+        let tolerance = if round % 3 == 0 { 0.01 } else { 0.1 };
+        let mut line = |dx: f64, y: f64, z: f64| {
+            x += dx;
+            Lead::Line([x, y, z])
+        };
+        legs.push(go(line(5.0, 0.0, 0.0), 100.0, tolerance));
+        legs.push(go(line(0.0, 5.0, 1.0), 100.0, tolerance));
+        legs.push(go(line(1e-6, 5.0, 1.0), 100.0, tolerance));
+        for step in 0..40 {
+            let y = 5.0 - 0.1 * f64::from(step % 2);
+            legs.push(go(line(0.05, y, 1.0), 50.0, tolerance));
+        }
+        let end = line(2.0, 5.0, 1.0);
+        legs.push(go(end, f64::INFINITY, tolerance));
+        legs.push(go(
+            arc([x, 3.0, 0.0], [x, 1.0, 1.0], [0, 1], false, 0),
+            100.0,
+            tolerance,
+        ));
+        legs.push(go(
+            arc([x, 2.0, 0.0], [x, 1.0, 4.0], [0, 1], true, 2),
+            100.0,
+            tolerance,
+        ));
+        legs.push(go(Lead::Dwell(0.05), 100.0, tolerance));
+        let mut line = |dx: f64, y: f64, z: f64| {
+            x += dx;
+            Lead::Line([x, y, z])
+        };
+        legs.push(stop(line(0.0, 0.0, 0.0), 100.0, tolerance));
+        legs.push(go(line(0.0, 0.0, 0.0), 100.0, tolerance));
+    }
+    let start = [0.0; 3];
+    Course { start, legs }.toolpath()
+}
+
+fn limits() -> Limits<3> {
+    Limits::uniform(500.0, 2_000.0, 5e4).unwrap()
+}
+
+#[test]
+fn the_counter_counts() {
+    let counted = measure(|| drop(black_box(vec![1_u8; 100])));
+    assert_eq!(counted.count_total, 1, "{counted:?}");
+}
+
+#[test]
+fn sampling_never_allocates() {
+    let path = mixed(5);
+    let motion = plan(&path, &Settings::new(limits())).unwrap();
+    let mut sum = Vector::<3>::zeros();
+    let mut ticks = 0_u32;
+    let counted = measure(|| {
+        let mut sampler = Sampler::<3>::new(SamplePeriod::new(1e-3).unwrap());
+        for piece in motion.pieces() {
+            sampler.feed(piece);
+            while let Some((_, position)) = sampler.next_tick() {
+                sum += position;
+                ticks += 1;
+            }
+        }
+        let mut sampler = Sampler::<3>::new(SamplePeriod::new(1e-3).unwrap());
+        for piece in motion.pieces() {
+            sampler.feed(piece);
+            while let Some((_, sample)) = sampler.next_sample() {
+                sum += sample.velocity;
+                ticks += 1;
+            }
+        }
+    });
+    assert!(ticks > 1_000, "{ticks} ticks, {sum}");
+    assert_eq!(counted.count_total, 0, "{counted:?}");
+}
+
+/// Allocations of pushing and pulling a path after construction.
+fn allocations(path: &Toolpath<3>, settings: &Settings<3>) -> u64 {
+    let mut planner = KinematicSmoothing::new(path.start(), settings);
+    let mut pieces = 0_u64;
+    let mut count = |planner: &mut KinematicSmoothing<3>| {
+        while let Some(piece) = planner.pull() {
+            black_box(piece);
+            pieces += 1;
+        }
+    };
+    let counted = measure(|| {
+        for step in path.moves() {
+            planner.push(step).unwrap();
+            count(&mut planner);
+        }
+        planner.finish().unwrap();
+        count(&mut planner);
+    });
+    assert!(pieces > 0, "nothing was planned");
+    counted.count_total
+}
+
+fn planning_allocates_nothing(path: &Toolpath<3>) {
+    for method in Method::ALL {
+        for window in [2, 5, 64, 512] {
+            let settings = Settings::new(limits())
+                .with_method(method)
+                .with_window(window);
+            let counted = allocations(path, &settings);
+            assert_eq!(counted, 0, "{} in a window of {window}", method.name());
+        }
+    }
+}
+
+#[test]
+fn planning_lines_allocates_nothing() {
+    let path = mixed(20);
+    let lines: Vec<Move<3>> = path
+        .moves()
+        .iter()
+        .filter(|step| matches!(step.path(), Path::Line { .. }))
+        .copied()
+        .collect();
+    let mut path = Toolpath::starting_at(path.start()).unwrap();
+    for line in lines {
+        path.push(line).unwrap();
+    }
+    planning_allocates_nothing(&path);
+}
+
+#[test]
+fn planning_arcs_and_dwells_allocates_nothing() {
+    planning_allocates_nothing(&mixed(20));
+}
+
+#[test]
+fn planning_a_long_zigzag_allocates_nothing() {
+    let ends: Vec<_> = (1..3_000)
+        .map(|k| [f64::from(k), f64::from(k % 2), 0.0])
+        .collect();
+    planning_allocates_nothing(&Course::of_lines([0.0; 3], &ends, 100.0, 0.01).toolpath());
+}
