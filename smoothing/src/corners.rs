@@ -6,7 +6,7 @@
 
 use crate::lattice::{Lattice, MOST_CANDIDATES};
 use crate::leg::{Dwell, Leg};
-use crate::merge::{MERGE_SHARE, Merger, Vertex};
+use crate::merge::{MERGE_SHARE, Merger, ROUNDING_SHARE, Vertex};
 use crate::method::{Method, Settings};
 use crate::pieces::{MOST_PIECES, corner_between, unroll_corner, unroll_leg};
 use crate::select::Selection;
@@ -44,7 +44,7 @@ impl<const N: usize> Corners<N> {
             .map(|selection| Window::new(size, selection.is_balanced()))
             .collect();
         Self {
-            merger: Merger::new(start, settings.limits, MERGE_SHARE),
+            merger: Merger::new(start, settings.limits, share_of(settings.method)),
             pending: None,
             scaled: windows
                 .iter()
@@ -216,6 +216,14 @@ impl<const N: usize> Corners<N> {
             unroll_corner(to, corner, &leg, next, |piece| pieces.push_back(piece));
         }
         self.from = *to;
+    }
+}
+
+/// Share of the tolerance that merging may use.
+fn share_of(method: Method) -> f64 {
+    match method {
+        Method::KcsLocal | Method::KcsGlobal => ROUNDING_SHARE,
+        _ => MERGE_SHARE,
     }
 }
 

@@ -13,6 +13,10 @@ use toolglide_kinematics::{Limits, Serves, Tolerance, Vector};
 /// `c` lie `c^2 / 8R` off and corners that fill the chords cut `c^2 / 12R`: three parts to two.
 pub(crate) const MERGE_SHARE: f64 = 0.6;
 
+/// Share of the tolerance that merging may use where moves are to be taken as they come: enough to
+/// drop moves that are nothing but rounding.
+pub(crate) const ROUNDING_SHARE: f64 = 0.001;
+
 /// Most moves merged into one: bounds memory and the work a move.
 const MOST_MERGED: usize = 160;
 

@@ -14,16 +14,23 @@ pub enum Method {
     KcsUninterrupted,
     /// Interrupted acceleration at every corner.
     KcsInterrupted,
+    /// The dissertation's local corners: uninterrupted acceleration, each corner by itself, every move
+    /// as programmed.
+    KcsLocal,
+    /// The dissertation's global corners: as local, with corners overlapping where moves are short.
+    KcsGlobal,
     /// A full stop at the end of every move; arcs are smooth in between.
     ExactStop,
 }
 
 impl Method {
     /// All methods, the default first.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 6] = [
         Self::Kcs,
         Self::KcsUninterrupted,
         Self::KcsInterrupted,
+        Self::KcsLocal,
+        Self::KcsGlobal,
         Self::ExactStop,
     ];
 
@@ -34,6 +41,8 @@ impl Method {
             Self::Kcs => "kcs",
             Self::KcsUninterrupted => "kcs-uninterrupted",
             Self::KcsInterrupted => "kcs-interrupted",
+            Self::KcsLocal => "kcs-local",
+            Self::KcsGlobal => "kcs-global",
             Self::ExactStop => "exact-stop",
         }
     }

@@ -33,7 +33,9 @@ impl<const N: usize> Selection<N> {
             // Between its stops, an exact stop has only the chords of an arc to turn.
             Method::Kcs | Method::ExactStop => &[Kind::Fastest, Kind::Interrupted],
             Method::KcsInterrupted => &[Kind::Interrupted],
-            Method::KcsUninterrupted => &[Kind::Uninterrupted],
+            Method::KcsUninterrupted | Method::KcsLocal | Method::KcsGlobal => {
+                &[Kind::Uninterrupted]
+            }
         };
         kinds
             .iter()
