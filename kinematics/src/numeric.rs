@@ -66,7 +66,11 @@ pub const JUDGE_HALVINGS: u32 = 40;
 
 /// How many parts of one piece the judge looks at before it takes the bound for the value: never
 /// reached by motion that follows its path, a fraction of a second for motion made to be awkward.
-pub const JUDGE_PARTS: u32 = 200_000;
+pub const JUDGE_PARTS: u32 = 50_000;
+
+/// Numbers beyond this are no motion, mm, s and their quotients: sixth powers of them must still be
+/// finite.
+pub const LARGEST_MAGNITUDE: f64 = 1e30;
 
 /// How many moves ahead the judge of set-points looks at most for a motion that has left its path:
 /// enough for moves of a hundredth of the tolerance, and a millisecond at worst.

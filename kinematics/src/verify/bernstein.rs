@@ -3,10 +3,11 @@
 //!
 //! Source: the hull property and de Casteljau's halving, both standard. Not here: distances.
 
+use super::leg::is_measurable;
 use crate::numeric::{JUDGE_HALVINGS, SPEED_PRECISION};
 use crate::piece::Piece;
 use crate::sample::Sample;
-use crate::vector::{Vector, is_finite};
+use crate::vector::Vector;
 
 /// A cubic curve over `0..=1`.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +28,8 @@ impl<const N: usize> Cubic<N> {
         }
     }
 
-    pub(super) fn is_finite(&self) -> bool {
-        self.points.iter().all(is_finite)
+    pub(super) fn is_measurable(&self) -> bool {
+        self.points.iter().all(is_measurable)
     }
 
     /// The same curve seen from `origin`.

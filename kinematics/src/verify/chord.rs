@@ -63,6 +63,12 @@ impl<const N: usize> Chord<N> {
         (self.to - self.from).norm()
     }
 
+    /// Whether the motion moves away from a point and is farther than a distance already.
+    pub(super) fn leaves(&self, point: &Vector<N>, distance: f64) -> bool {
+        let away = (self.to - point).norm();
+        away > distance + self.slack && away > (self.from - point).norm()
+    }
+
     /// How far a point certainly is from the motion, and when it is closest.
     pub(super) fn distance(&self, point: &Vector<N>) -> (f64, f64) {
         let span = self.to - self.from;

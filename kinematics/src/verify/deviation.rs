@@ -186,7 +186,12 @@ impl<const N: usize> Search<'_, N> {
         let mut lowest = [Lowest::default(); 2];
         for leg in self.route.range(part.first, part.last) {
             let values = leg.majorant(&part.curve);
-            let most = values.iter().copied().fold(0.0, f64::max);
+            let [a, b, c, d] = values;
+            let most = if (a + b + c + d).is_nan() {
+                f64::INFINITY
+            } else {
+                a.max(b).max(c).max(d)
+            };
             let weight = leg.allowed.recip();
             lowest[0].offer(values, most);
             lowest[1].offer(values.map(|value| value * weight), most * weight);

@@ -4,14 +4,14 @@
 //! is a straight line, jerk is constant; the square of the speed is a quartic. Not here: the path.
 
 use super::bernstein::{Largest, squared_speed};
-use super::leg::length_slack;
+use super::leg::{is_measurable, length_slack};
 use super::report::{Peak, Place, Report};
 use super::violation::Violation;
 use crate::limits::Limits;
-use crate::numeric::{JUMP_SLACK, LIMIT_SLACK};
+use crate::numeric::{JUMP_SLACK, LARGEST_MAGNITUDE, LIMIT_SLACK};
 use crate::piece::Piece;
 use crate::sample::Sample;
-use crate::vector::{Vector, is_finite};
+use crate::vector::Vector;
 
 /// A piece with its ends and its beginning on the clock.
 #[derive(Clone, Copy, Debug)]
@@ -53,19 +53,19 @@ impl<const N: usize> Stretch<N> {
         }
     }
 
-    pub(super) fn is_finite(&self) -> bool {
+    pub(super) fn is_motion(&self) -> bool {
         let fine = |at: &Sample<N>| {
-            is_finite(&at.position)
-                && is_finite(&at.velocity)
-                && is_finite(&at.acceleration)
-                && is_finite(&at.jerk)
+            is_measurable(&at.position)
+                && is_measurable(&at.velocity)
+                && is_measurable(&at.acceleration)
+                && is_measurable(&at.jerk)
         };
         // A negative duration runs back in time, which is no motion either.
         self.duration >= 0.0
-            && self.begin.is_finite()
+            && self.begin + self.duration <= LARGEST_MAGNITUDE
             && fine(&self.start)
             && fine(&self.end)
-            && is_finite(&self.stated_end)
+            && is_measurable(&self.stated_end)
     }
 
     /// Whether the whole piece stands still.

@@ -78,6 +78,10 @@ impl<const N: usize> Helix<N> {
         }
     }
 
+    pub(super) fn radius(&self) -> f64 {
+        self.radius.max(self.radius + self.growth)
+    }
+
     pub(super) fn point(&self, share: f64) -> Vector<N> {
         self.arc.point(share)
     }
@@ -87,8 +91,8 @@ impl<const N: usize> Helix<N> {
         clippy::cast_sign_loss,
         reason = "a sweep is at most a few 2^32 turns and positive here; the cast saturates"
     )]
-    pub(super) fn waypoints(&self) -> u32 {
-        (self.sweep.abs() / WAYPOINT_SPACING).floor() as u32
+    pub(super) fn waypoints(&self) -> u64 {
+        (self.sweep.abs() / WAYPOINT_SPACING).floor() as u64
     }
 
     /// Share of the sweep and distance of the nearest point.

@@ -80,7 +80,7 @@ impl<const N: usize> Judge<N> {
         let place = self.place(first);
         self.report.observed += 1;
         let curve = Cubic::of(&stretch.start, piece);
-        if !(stretch.is_finite() && curve.is_finite()) {
+        if !(stretch.is_motion() && curve.is_measurable()) {
             let time = self.time;
             self.report.add(Violation::NotFinite { time, place });
             return;

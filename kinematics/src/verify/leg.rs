@@ -5,7 +5,9 @@
 use super::bernstein::Cubic;
 use super::helix::Helix;
 use super::report::Place;
-use crate::numeric::{COORDINATE_ROUNDING, LENGTH_SLACK, LIMIT_SLACK, SHORTEST_LENGTH, TIME_SLACK};
+use crate::numeric::{
+    COORDINATE_ROUNDING, LARGEST_MAGNITUDE, LENGTH_SLACK, LIMIT_SLACK, SHORTEST_LENGTH, TIME_SLACK,
+};
 use crate::toolpath::{Move, Path};
 use crate::vector::Vector;
 
@@ -47,7 +49,7 @@ pub(super) struct Leg<const N: usize> {
     pub(super) stopped: bool,
     pub(super) rested: f64,
     /// How many points inside an arc were passed, and the time of the last.
-    pub(super) waypoints_passed: u32,
+    pub(super) waypoints_passed: u64,
 }
 
 impl<const N: usize> Leg<N> {
@@ -139,19 +141,34 @@ impl<const N: usize> Leg<N> {
 
     /// How many points inside the move the motion must pass in turn: those which cut an arc in
     /// parts of less than half a turn, so that no turn can be left out.
-    pub(super) fn waypoints(&self) -> u32 {
+    pub(super) fn waypoints(&self) -> u64 {
         match &self.shape {
             Shape::Line { .. } => 0,
+            // From its centre all of it is within tolerance: there is no turn to leave out.
+            Shape::Arc(helix) if helix.radius() <= self.allowed => 0,
             Shape::Arc(helix) => helix.waypoints(),
         }
     }
 
+    /// Passes all waypoints of an arc that may lie within `room` of its centre as a whole.
+    pub(super) fn pass_if_small(&mut self, room: f64) {
+        if let Shape::Arc(helix) = &self.shape
+            && helix.radius() <= room
+        {
+            self.waypoints_passed = helix.waypoints();
+        }
+    }
+
     /// The waypoint of a number, counted from 0, and its share of the turn.
-    pub(super) fn waypoint(&self, index: u32) -> (Vector<N>, f64) {
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "an arc of 2^32 turns has fewer than 2^53 waypoints"
+    )]
+    pub(super) fn waypoint(&self, index: u64) -> (Vector<N>, f64) {
         match &self.shape {
             Shape::Line { .. } => (self.end, 1.0),
             Shape::Arc(helix) => {
-                let share = (f64::from(index) + 1.0) / (f64::from(helix.waypoints()) + 1.0);
+                let share = (index + 1) as f64 / (helix.waypoints() + 1) as f64;
                 (helix.point(share), share)
             }
         }
@@ -170,6 +187,13 @@ impl<const N: usize> Leg<N> {
         self.dwell
             .is_none_or(|duration| self.rested >= duration * (1.0 - LIMIT_SLACK) - TIME_SLACK)
     }
+}
+
+/// Whether every coordinate is a number to reckon with.
+pub(super) fn is_measurable<const N: usize>(vector: &Vector<N>) -> bool {
+    vector
+        .iter()
+        .all(|coordinate| coordinate.abs() <= LARGEST_MAGNITUDE)
 }
 
 /// Room for the rounding of a length among coordinates of this size.

@@ -13,16 +13,16 @@ use thiserror::Error;
 use super::chord::Chord;
 use super::differences::Recent;
 use super::dynamics::{Quantity, note, note_feedrate};
-use super::leg::length_slack;
+use super::leg::{is_measurable, length_slack};
 use super::report::{Place, Report};
 use super::route::Route;
 use super::tracker::Tracker;
 use super::violation::Violation;
 use crate::error::ToolpathError;
 use crate::limits::Limits;
-use crate::numeric::LIMIT_SLACK;
+use crate::numeric::{LARGEST_MAGNITUDE, LIMIT_SLACK};
 use crate::toolpath::{Move, Toolpath};
-use crate::vector::{Vector, is_finite};
+use crate::vector::Vector;
 
 /// Why set-points cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -38,7 +38,7 @@ pub enum VerifyError {
         /// Time of the one before.
         before: f64,
     },
-    /// A time or a position is not a finite number.
+    /// A time or a position is not a finite number, or larger than any machine.
     #[error("set-point {index}: not a finite number")]
     NotFinite {
         /// The set-point, counted from 0.
@@ -174,7 +174,7 @@ impl<const N: usize> SetPointJudge<N> {
         if !(value >= 0.0 && value.is_finite()) {
             return Err(VerifyError::Resolution { value });
         }
-        if !(time.is_finite() && is_finite(position)) {
+        if !(time.abs() <= LARGEST_MAGNITUDE && is_measurable(position)) {
             return Err(VerifyError::NotFinite { index });
         }
         match self.recent.points().first() {

@@ -104,7 +104,7 @@ impl Tracker {
         while self.feed_low < self.high
             && route
                 .get(self.feed_low)
-                .is_none_or(|leg| (chord.to - leg.end).norm() > leg.corner_allowed + chord.rounding)
+                .is_none_or(|leg| chord.leaves(&leg.end, leg.corner_allowed))
         {
             self.feed_low += 1;
         }
@@ -139,6 +139,7 @@ impl Tracker {
             let Some(leg) = route.get_mut(self.high) else {
                 return;
             };
+            leg.pass_if_small(leg.allowed + chord.slack);
             if leg.waypoints_passed < leg.waypoints() {
                 let (point, _) = leg.waypoint(leg.waypoints_passed);
                 let Some(at) = chord.enters(&point, leg.allowed, from) else {

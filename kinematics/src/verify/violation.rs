@@ -220,7 +220,7 @@ pub enum Violation {
         /// The move.
         place: Place,
     },
-    /// A piece is not a motion at all.
+    /// A piece is not a motion at all: numbers that are not finite or larger than any machine.
     #[error("the motion is not a finite number at {time:.3} s ({place})")]
     NotFinite {
         /// When.
