@@ -4,16 +4,17 @@
 //! corner, the lattice chooses among them, and the chosen ones are unrolled into pieces when they are
 //! asked for. Not here: any formula.
 
-use crate::lattice::{Lattice, MOST_CANDIDATES};
+use crate::lattice::{Choice, Lattice, MOST_CANDIDATES};
 use crate::leg::{Dwell, Leg};
 use crate::merge::{MERGE_SHARE, Merger, ROUNDING_SHARE, Vertex};
 use crate::method::{Method, Settings};
+use crate::overlap::Between;
 use crate::pieces::{MOST_PIECES, corner_between, unroll_corner, unroll_leg};
 use crate::select::Selection;
-use crate::turn::TurnShape;
+use crate::turn::{Part, TurnShape};
 use crate::window::{Link, Window};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Piece, Tolerance, Vector};
+use toolglide_kinematics::{Limits, Piece, Tolerance, Vector};
 
 /// Plans the corners of a stream of vertices, from rest to rest.
 #[derive(Clone, Debug)]
@@ -29,8 +30,15 @@ pub(crate) struct Corners<const N: usize> {
     /// Legs that have not been unrolled; the first `offered` of them are in the lattice.
     legs: VecDeque<Leg<N>>,
     offered: usize,
+    /// Scales of full uninterrupted corners that may overlap.
+    overlapping: &'static [f64],
+    limits: Limits<N>,
+    /// The leg before the next one to be unrolled.
+    last: Option<Leg<N>>,
+    /// The leg before the first that is not in the lattice.
+    last_offered: Option<Leg<N>>,
     /// How the next leg to be unrolled begins.
-    from: TurnShape,
+    from: Choice,
     pieces: VecDeque<Piece<N>>,
 }
 
@@ -56,7 +64,11 @@ impl<const N: usize> Corners<N> {
             lattice: Lattice::new(size, burst),
             legs: VecDeque::with_capacity(burst + 3 * size + 8),
             offered: 0,
-            from: TurnShape::STOP,
+            overlapping: overlapping_of(settings.method),
+            limits: settings.limits,
+            last: None,
+            last_offered: None,
+            from: AT_REST,
             pieces: VecDeque::with_capacity(MOST_PIECES + 1),
         }
     }
@@ -72,7 +84,9 @@ impl<const N: usize> Corners<N> {
         self.lattice.restart();
         self.legs.clear();
         self.offered = 0;
-        self.from = TurnShape::STOP;
+        self.last = None;
+        self.last_offered = None;
+        self.from = AT_REST;
         self.pieces.clear();
     }
 
@@ -128,7 +142,7 @@ impl<const N: usize> Corners<N> {
         if let Some(last) = self.pending.take() {
             let link = link_of(&last);
             self.legs.push_back(last);
-            self.lattice.push(&link, &[TurnShape::STOP]);
+            self.lattice.push(&link, &[TurnShape::STOP], |_, _| None);
             self.offered += 1;
             self.lattice.finish();
         }
@@ -140,8 +154,8 @@ impl<const N: usize> Corners<N> {
             if let Some(piece) = self.pieces.pop_front() {
                 return Some(piece);
             }
-            let shape = self.lattice.pull()?;
-            self.unroll(&shape);
+            let choice = self.lattice.pull()?;
+            self.unroll(&choice);
         }
     }
 
@@ -187,35 +201,102 @@ impl<const N: usize> Corners<N> {
                     count += 1;
                 }
             }
+            let next = self.legs.get(self.offered + 1).or(self.pending.as_ref());
             if leg.stop {
                 count = 0;
+            } else if let (Some(selection), Some(next)) = (self.selections.first(), next)
+                && !self.overlapping.is_empty()
+            {
+                let corner = corner_between(leg, next, corner_tolerance(leg, next));
+                let reach = 4.0 * corner.tolerance.length() / corner.half_turn_sine();
+                if reach > OVERLAPPING_REACH * leg.length.min(next.length)
+                    && let Some(shape) = selection.unscaled(&corner)
+                {
+                    for scale in self.overlapping {
+                        candidates[count] = shape.scaled(*scale);
+                        count += 1;
+                    }
+                }
             }
             if self.stops_allowed || leg.stop {
                 candidates[count] = TurnShape::STOP;
                 count += 1;
             }
             let link = link_of(leg);
-            self.lattice.push(&link, &candidates[..count]);
+            let last = self.last_offered.as_ref();
+            self.lattice.push(&link, &candidates[..count], |from, to| {
+                let between = Between {
+                    before: last?,
+                    leg,
+                    after: next?,
+                };
+                between.duration(from, to, &self.limits)
+            });
+            self.last_offered = Some(*leg);
             self.offered += 1;
         }
     }
 
-    /// Unrolls the next leg and the corner at its end.
-    fn unroll(&mut self, to: &TurnShape) {
+    /// Unrolls what is left of the corner before the next leg, and the leg.
+    fn unroll(&mut self, to: &Choice) {
         let Some(leg) = self.legs.pop_front() else {
             return;
         };
         self.offered -= 1;
         let pieces = &mut self.pieces;
-        unroll_leg(&leg, &self.from, to, |piece| pieces.push_back(piece));
+        let from = self.from;
+        let part = match (from.overlap, to.overlap) {
+            (None, None) => Some(Part::Whole),
+            (None, Some(_)) => Some(Part::FirstHalf),
+            (Some(_), None) => Some(Part::SecondHalf),
+            (Some(_), Some(_)) => None,
+        };
+        if let (Some(last), Some(part)) = (&self.last, part) {
+            let corner = corner_between(last, &leg, corner_tolerance(last, &leg));
+            unroll_corner(&from.shape, part, corner, last, &leg, |piece| {
+                pieces.push_back(piece);
+            });
+        }
+        let next = self.legs.front().or(self.pending.as_ref());
+        match (to.overlap, &self.last, next) {
+            (Some(duration), Some(before), Some(after)) => {
+                let between = Between {
+                    before,
+                    leg: &leg,
+                    after,
+                };
+                between.pieces(&from.shape, &to.shape, duration, |piece| {
+                    pieces.push_back(piece);
+                });
+            }
+            _ => unroll_leg(&leg, &from.shape, &to.shape, |piece| {
+                pieces.push_back(piece)
+            }),
+        }
         if let Some(pause) = leg.dwell {
             pieces.push_back(pause.piece(leg.end));
         }
-        if let Some(next) = self.legs.front().or(self.pending.as_ref()) {
-            let corner = corner_between(&leg, next, corner_tolerance(&leg, next));
-            unroll_corner(to, corner, &leg, next, |piece| pieces.push_back(piece));
-        }
+        self.last = Some(leg);
         self.from = *to;
+    }
+}
+
+/// Share of the shorter move beside a corner that the full corner must reach over, lest it is not
+/// tried overlapping.
+const OVERLAPPING_REACH: f64 = 0.3;
+
+/// How a path begins.
+const AT_REST: Choice = Choice {
+    shape: TurnShape::STOP,
+    overlap: None,
+};
+
+/// Scales of the full uninterrupted corner that are tried overlapping.
+fn overlapping_of(method: Method) -> &'static [f64] {
+    match method {
+        Method::Kcs => &[1.0],
+        Method::KcsGlobal => &[1.0, 0.8, 0.64, 0.5],
+        _ => &[],
     }
 }
 

@@ -3,7 +3,7 @@
 //! Source: section 2.2.2 and 2.3, equations 2.19 to 2.33, in vector form; a corner whose speed the
 //! feedrate limits is the same motion at that speed. Not here: how corners share a short move.
 
-use crate::turn::{Turn, TurnShape};
+use crate::turn::{Form, Turn, TurnShape};
 use toolglide_kinematics::{Corner, Limits, largest_multiple};
 use toolglide_profiles::{BlendError, Blender};
 
@@ -70,7 +70,7 @@ impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
                 acceleration: 0.0,
                 reach: 0.5 * speed * duration,
                 duration,
-                ramp,
+                form: Form::Interrupted { ramp },
             },
             *corner,
         ))

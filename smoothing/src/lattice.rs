@@ -13,7 +13,10 @@ use std::collections::VecDeque;
 use toolglide_profiles::Connection;
 
 /// Most candidates of one corner.
-pub(crate) const MOST_CANDIDATES: usize = 4;
+pub(crate) const MOST_CANDIDATES: usize = 6;
+
+/// Share of a move that two corners must leave free, lest they are tried overlapping.
+const OVERLAPPING: f64 = 0.4;
 
 /// Corners between two attempts to commit.
 const PATIENCE: usize = 16;
@@ -22,16 +25,27 @@ const PATIENCE: usize = 16;
 #[derive(Clone, Copy, Debug)]
 struct Column {
     shapes: [TurnShape; MOST_CANDIDATES],
+    /// Time to the middle of the corner.
     costs: [f64; MOST_CANDIDATES],
     origins: [u8; MOST_CANDIDATES],
+    /// Duration of the overlap in which the corner is reached; zero when it is reached on the move.
+    overlaps: [f64; MOST_CANDIDATES],
     count: usize,
+}
+
+/// The motion chosen for a corner.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice {
+    pub(crate) shape: TurnShape,
+    /// Duration from the middle of the corner before to the middle of this one where both overlap.
+    pub(crate) overlap: Option<f64>,
 }
 
 /// The cheapest way through a stream of corners, committed as soon as all ways agree.
 #[derive(Clone, Debug)]
 pub(crate) struct Lattice {
     columns: VecDeque<Column>,
-    chosen: VecDeque<TurnShape>,
+    chosen: VecDeque<Choice>,
     way: Vec<u8>,
     size: usize,
     wait: usize,
@@ -71,14 +85,20 @@ impl Lattice {
         self.time_to_stop = 0.0;
     }
 
-    /// Takes a move and the candidates of the corner at its end.
-    pub(crate) fn push(&mut self, link: &Link, candidates: &[TurnShape]) {
+    /// Takes a move and the candidates of the corner at its end; `overlap` gives the duration from the
+    /// middle of one corner to the middle of the next where they can overlap.
+    pub(crate) fn push(
+        &mut self,
+        link: &Link,
+        candidates: &[TurnShape],
+        overlap: impl Fn(&TurnShape, &TurnShape) -> Option<f64>,
+    ) {
         let mut column = Column::empty();
         for candidate in candidates {
             column.offer(*candidate);
         }
         if let Some(last) = self.columns.back() {
-            column.reach_from(last, link);
+            column.reach_from(last, link, overlap);
         }
         let limits = &link.limits;
         let time_to_stop =
@@ -99,7 +119,7 @@ impl Lattice {
     }
 
     /// The motion chosen for the next corner.
-    pub(crate) fn pull(&mut self) -> Option<TurnShape> {
+    pub(crate) fn pull(&mut self) -> Option<Choice> {
         self.chosen.pop_front()
     }
 
@@ -144,7 +164,12 @@ impl Lattice {
         }
         for at in 1..=index {
             let choice = usize::from(self.way[index - at]);
-            self.chosen.push_back(self.columns[at].shapes[choice]);
+            let column = &self.columns[at];
+            let overlap = column.overlaps[choice];
+            self.chosen.push_back(Choice {
+                shape: column.shapes[choice],
+                overlap: (overlap > 0.0).then_some(overlap),
+            });
         }
         self.columns.drain(..index);
         self.settle();
@@ -196,6 +221,7 @@ impl Column {
             shapes: [TurnShape::STOP; MOST_CANDIDATES],
             costs: [f64::INFINITY; MOST_CANDIDATES],
             origins: [0; MOST_CANDIDATES],
+            overlaps: [0.0; MOST_CANDIDATES],
             count: 0,
         }
     }
@@ -239,29 +265,45 @@ impl Column {
     }
 
     /// Finds the cheapest way to each candidate over `link`.
-    fn reach_from(&mut self, last: &Self, link: &Link) {
+    fn reach_from(
+        &mut self,
+        last: &Self,
+        link: &Link,
+        overlap: impl Fn(&TurnShape, &TurnShape) -> Option<f64>,
+    ) {
         for candidate in 0..self.count {
             let to = self.shapes[candidate];
             let mut best = f64::INFINITY;
             for origin in 0..last.count {
                 let from = &last.shapes[origin];
                 let length = link.length - from.reach - to.reach;
+                let before = last.costs[origin];
+                let halves = 0.5 * (from.duration + to.duration);
                 // No way is shorter than the whole length at the feedrate.
-                let least = last.costs[origin] + to.duration + length / link.limits.velocity;
-                if length < 0.0 || least >= best {
-                    continue;
-                }
-                let connection = Connection {
-                    from: [from.speed, from.acceleration],
-                    to: [to.speed, to.acceleration],
-                    limits: link.limits,
-                };
-                if let Some(duration) = connection.duration_over(length) {
-                    let cost = last.costs[origin] + to.duration + duration;
-                    if cost < best {
-                        best = cost;
-                        self.origins[candidate] = u8::try_from(origin).unwrap_or(0);
+                if length >= 0.0 && before + halves + length / link.limits.velocity < best {
+                    let connection = Connection {
+                        from: [from.speed, from.acceleration],
+                        to: [to.speed, to.acceleration],
+                        limits: link.limits,
+                    };
+                    if let Some(duration) = connection.duration_over(length) {
+                        let cost = before + halves + duration;
+                        if cost < best {
+                            best = cost;
+                            self.origins[candidate] = u8::try_from(origin).unwrap_or(0);
+                            self.overlaps[candidate] = 0.0;
+                        }
                     }
+                }
+                let short = length < OVERLAPPING * link.length;
+                if short
+                    && before < best
+                    && let Some(duration) = overlap(from, &to)
+                    && before + duration < best
+                {
+                    best = before + duration;
+                    self.origins[candidate] = u8::try_from(origin).unwrap_or(0);
+                    self.overlaps[candidate] = duration;
                 }
             }
             self.costs[candidate] = best;

@@ -12,9 +12,11 @@ mod lattice;
 mod leg;
 mod merge;
 mod method;
+mod overlap;
 mod pieces;
 mod planner;
 mod select;
+mod stop_start;
 mod stretch;
 mod superposed;
 mod turn;
@@ -24,7 +26,8 @@ mod window;
 pub use interrupted::Interrupted;
 pub use method::{Method, Settings};
 pub use planner::{KinematicSmoothing, plan};
-pub use turn::{Turn, TurnShape};
+pub use stop_start::StopStart;
+pub use turn::{Form, Part, Turn, TurnShape};
 pub use uninterrupted::Uninterrupted;
 
 /// Turns of a unit direction smaller than this are taken for straight: the velocity then jumps by

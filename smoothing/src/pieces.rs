@@ -4,12 +4,12 @@
 //! rounding does not add up along the path. Not here: the choice of the corner.
 
 use crate::leg::Leg;
-use crate::turn::{Turn, TurnShape};
+use crate::turn::{Part, Turn, TurnShape};
 use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance};
 use toolglide_profiles::{Connection, Feed, State};
 
 /// Most pieces of a leg, its corner and a pause.
-pub(crate) const MOST_PIECES: usize = 11;
+pub(crate) const MOST_PIECES: usize = 16;
 
 /// Unrolls the leg between two corner motions.
 pub(crate) fn unroll_leg<const N: usize>(
@@ -88,9 +88,10 @@ pub(crate) fn corner_between<const N: usize>(
     }
 }
 
-/// Unrolls the corner motion between two legs.
+/// Unrolls a part of the corner motion between two legs.
 pub(crate) fn unroll_corner<const N: usize>(
     shape: &TurnShape,
+    part: Part,
     corner: Corner<N>,
     leg: &Leg<N>,
     next: &Leg<N>,
@@ -100,5 +101,5 @@ pub(crate) fn unroll_corner<const N: usize>(
         first: leg.serves.first,
         last: next.serves.last,
     };
-    Turn::new(*shape, corner).pieces(serves, take);
+    Turn::new(*shape, corner).pieces(part, serves, take);
 }

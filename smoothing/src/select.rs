@@ -5,6 +5,7 @@
 
 use crate::interrupted::Interrupted;
 use crate::method::{Method, Settings};
+use crate::stop_start::StopStart;
 use crate::turn::TurnShape;
 use crate::uninterrupted::Uninterrupted;
 use toolglide_kinematics::{Corner, Limits, Tangential};
@@ -17,6 +18,7 @@ pub(crate) struct Selection<const N: usize> {
     limits: Limits<N>,
     interrupted: Interrupted<N>,
     uninterrupted: Uninterrupted<N>,
+    stop_start: StopStart<N>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +46,7 @@ impl<const N: usize> Selection<N> {
                 limits: settings.limits,
                 interrupted: Interrupted::new(settings.limits),
                 uninterrupted: Uninterrupted::new(settings.limits),
+                stop_start: StopStart::new(settings.limits),
             })
             .collect()
     }
@@ -53,6 +56,14 @@ impl<const N: usize> Selection<N> {
         self.kind != Kind::Interrupted
     }
 
+    /// The uninterrupted corner as if the moves beside it were long.
+    pub(crate) fn unscaled(&self, corner: &Corner<N>) -> Option<TurnShape> {
+        self.uninterrupted
+            .blend(corner)
+            .ok()
+            .map(|turn| *turn.shape())
+    }
+
     /// The motion for a corner between moves of two lengths.
     pub(crate) fn shape(&self, corner: &Corner<N>, before: f64, after: f64) -> TurnShape {
         let interrupted = || self.interrupted.blend(corner).map(|turn| *turn.shape());
@@ -60,10 +71,17 @@ impl<const N: usize> Selection<N> {
         let shape = match self.kind {
             Kind::Interrupted => interrupted(),
             Kind::Uninterrupted => uninterrupted().or_else(|_| interrupted()),
-            Kind::Fastest => match (interrupted(), uninterrupted()) {
-                (Ok(one), Ok(other)) => Ok(self.faster(corner, before, after, one, other)),
-                (one, _) => one,
-            },
+            Kind::Fastest => {
+                let stop_start = self.stop_start.blend(corner).map(|turn| *turn.shape());
+                let mut fastest = interrupted();
+                for other in [uninterrupted(), stop_start] {
+                    fastest = match (fastest, other) {
+                        (Ok(one), Ok(other)) => Ok(self.faster(corner, before, after, one, other)),
+                        (one, _) => one,
+                    };
+                }
+                fastest
+            }
         };
         shape.unwrap_or(TurnShape::STOP)
     }

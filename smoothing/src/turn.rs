@@ -3,14 +3,33 @@
 //! Source: sections 2.3 and 3.2, in the vector form where a corner is a mixture of the incoming and
 //! the outgoing direction. Not here: how large it may be, see the blenders.
 
+use crate::stop_start::Start;
 use toolglide_kinematics::{Corner, Piece, Sample, Serves, Vector};
 use toolglide_profiles::{Boundary, CornerMotion};
 
+/// How the velocity turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Form {
+    /// No turn of its own: straight through the corner, or at rest in it.
+    #[default]
+    Through,
+    /// From the incoming to the outgoing direction along an S-curve, which raises the acceleration
+    /// for `ramp`, holds it, and lowers it for `ramp` again.
+    Interrupted {
+        /// Duration of each of the two ramps.
+        ramp: f64,
+    },
+    /// Constant jerk over the whole corner.
+    Uninterrupted,
+    /// A stop along the incoming and a start along the outgoing move, overlapped; each holds its
+    /// acceleration but for a `ramp` at rest.
+    StopStart {
+        /// Duration of the ramp of either.
+        ramp: f64,
+    },
+}
+
 /// A corner motion without its geometry, symmetric about the corner.
-///
-/// With `ramp > 0`, or with neither ramp nor duration, the velocity goes from the incoming to the
-/// outgoing direction along an S-curve that raises the acceleration for `ramp`, holds it, and lowers
-/// it for `ramp` again. With `ramp = 0` the jerk is constant over the whole corner.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurnShape {
     /// Speed at both boundaries.
@@ -21,8 +40,8 @@ pub struct TurnShape {
     pub reach: f64,
     /// How long the corner takes.
     pub duration: f64,
-    /// Duration of each of the two ramps of the acceleration; zero when the jerk is constant.
-    pub ramp: f64,
+    /// How the velocity turns.
+    pub form: Form,
 }
 
 impl TurnShape {
@@ -32,7 +51,7 @@ impl TurnShape {
         acceleration: 0.0,
         reach: 0.0,
         duration: 0.0,
-        ramp: 0.0,
+        form: Form::Through,
     };
 
     /// The same turn with all times multiplied by `scale` (0 to 1) at the same jerk.
@@ -48,7 +67,11 @@ impl TurnShape {
             acceleration: self.acceleration * scale,
             reach: self.reach * square * scale,
             duration: self.duration * scale,
-            ramp: self.ramp * scale,
+            form: match self.form {
+                Form::Interrupted { ramp } => Form::Interrupted { ramp: ramp * scale },
+                Form::StopStart { ramp } => Form::StopStart { ramp: ramp * scale },
+                form => form,
+            },
         }
     }
 
@@ -60,8 +83,8 @@ impl TurnShape {
 
     /// Whether the jerk is constant over the whole corner.
     #[must_use]
-    pub fn has_constant_jerk(&self) -> bool {
-        self.ramp <= 0.0
+    pub fn is_uninterrupted(&self) -> bool {
+        self.form == Form::Uninterrupted
     }
 }
 
@@ -89,14 +112,14 @@ impl<const N: usize> Turn<N> {
         &self.corner
     }
 
-    /// Unrolls the motion, phase by phase; nothing for a full stop.
-    pub fn pieces(&self, serves: Serves, mut take: impl FnMut(Piece<N>)) {
+    /// Unrolls a part of the motion, phase by phase; nothing for a full stop.
+    pub fn pieces(&self, part: Part, serves: Serves, mut take: impl FnMut(Piece<N>)) {
         let TurnShape {
             speed,
             acceleration,
             reach,
             duration,
-            ramp,
+            form,
         } = self.shape;
         if duration <= 0.0 {
             return;
@@ -107,48 +130,87 @@ impl<const N: usize> Turn<N> {
             outgoing,
             ..
         } = self.corner;
-        let start = Sample {
+        let turned = outgoing - incoming;
+        let none = Vector::zeros();
+        // Up to three phases of constant jerk, the same forwards and backwards.
+        let phases = match form {
+            Form::Through => return,
+            Form::Uninterrupted => {
+                let half = (incoming + outgoing) * (acceleration / duration);
+                [(0.5 * duration, half), (0.0, none), (0.5 * duration, half)]
+            }
+            Form::Interrupted { ramp } => {
+                let hold = (duration - 2.0 * ramp).max(0.0);
+                let jerk = turned * (speed / ((ramp + hold) * ramp));
+                [(ramp, jerk), (hold, none), (ramp, -jerk)]
+            }
+            Form::StopStart { ramp } => {
+                let (start, stop) = (
+                    outgoing * (acceleration / ramp),
+                    incoming * (acceleration / ramp),
+                );
+                if duration >= 2.0 * ramp {
+                    [(ramp, start), (duration - 2.0 * ramp, none), (ramp, stop)]
+                } else {
+                    let alone = duration - ramp;
+                    [(alone, start), (ramp - alone, start + stop), (alone, stop)]
+                }
+            }
+        };
+        let mut state = Sample {
             position: point - incoming * reach,
             velocity: incoming * speed,
             acceleration: incoming * -acceleration,
-            jerk: Vector::zeros(),
+            jerk: none,
         };
         let end = point + outgoing * reach;
-        if self.shape.has_constant_jerk() {
-            let jerk = (incoming + outgoing) * (acceleration / duration);
-            take(Piece::new(&Sample { jerk, ..start }, duration, end, serves));
+        let whole = part == Part::Whole;
+        if whole && form == Form::Uninterrupted {
+            state.jerk = phases[0].1;
+            take(Piece::new(&state, duration, end, serves));
             return;
         }
-        let hold = (duration - 2.0 * ramp).max(0.0);
-        let turned = outgoing - incoming;
-        let held = turned * (speed / (ramp + hold));
-        let jerk = held / ramp;
-        let after_ramp = start.position + (start.velocity + jerk * (ramp * ramp / 6.0)) * ramp;
-        let velocity_after_ramp = start.velocity + held * (0.5 * ramp);
-        let after_hold = after_ramp + (velocity_after_ramp + held * (0.5 * hold)) * hold;
-        let velocity_after_hold = velocity_after_ramp + held * hold;
-        take(Piece::new(
-            &Sample { jerk, ..start },
-            ramp,
-            after_ramp,
-            serves,
-        ));
-        if hold > 0.0 {
-            let state = Sample {
-                position: after_ramp,
-                velocity: velocity_after_ramp,
-                acceleration: held,
-                jerk: Vector::zeros(),
+        let middle = 0.5 * duration;
+        let mut time = 0.0;
+        for (index, (length, jerk)) in phases.into_iter().enumerate() {
+            state.jerk = jerk;
+            let phase_end = if index == 2 { duration } else { time + length };
+            let (from, to) = match part {
+                Part::Whole => (time, phase_end),
+                Part::FirstHalf => (time, phase_end.min(middle)),
+                Part::SecondHalf => (time.max(middle), phase_end),
             };
-            take(Piece::new(&state, hold, after_hold, serves));
+            if to > from {
+                let start = after(&state, from - time);
+                let next = after(&state, to - time);
+                let piece_end = if to >= duration { end } else { next.position };
+                take(Piece::new(&start, to - from, piece_end, serves));
+            }
+            state = after(&state, length);
+            time = phase_end;
         }
-        let state = Sample {
-            position: after_hold,
-            velocity: velocity_after_hold,
-            acceleration: held,
-            jerk: -jerk,
-        };
-        take(Piece::new(&state, ramp, end, serves));
+    }
+}
+
+/// Which part of a corner motion is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// From its beginning to its middle.
+    FirstHalf,
+    /// From its middle to its end.
+    SecondHalf,
+}
+
+fn after<const N: usize>(state: &Sample<N>, time: f64) -> Sample<N> {
+    Sample {
+        position: state.position
+            + (state.velocity + (state.acceleration * 0.5 + state.jerk * (time / 6.0)) * time)
+                * time,
+        velocity: state.velocity + (state.acceleration + state.jerk * (0.5 * time)) * time,
+        acceleration: state.acceleration + state.jerk * time,
+        jerk: state.jerk,
     }
 }
 
@@ -172,21 +234,28 @@ impl<const N: usize> CornerMotion for Turn<N> {
     fn corner_error(&self) -> f64 {
         let TurnShape {
             speed,
-            duration,
+            acceleration,
             reach,
-            ramp,
-            ..
+            duration,
+            form,
         } = self.shape;
-        if duration <= 0.0 {
-            return 0.0;
+        let half_sine = self.corner.half_turn_sine();
+        match form {
+            Form::Through => 0.0,
+            Form::Uninterrupted => 0.25 * reach * half_sine,
+            Form::Interrupted { ramp } => {
+                // Half-way the S-curve has covered this much less than the straight line would have.
+                let hold = (duration - 2.0 * ramp).max(0.0);
+                let held = speed / (ramp + hold);
+                2.0 * half_sine * (speed * speed / (8.0 * held) + held * ramp * ramp / 24.0)
+            }
+            Form::StopStart { ramp } => {
+                let start = Start {
+                    jerk: acceleration / ramp,
+                    acceleration,
+                };
+                2.0 * half_sine * start.distance_at(0.5 * duration)
+            }
         }
-        if self.shape.has_constant_jerk() {
-            return 0.25 * reach * self.corner.half_turn_sine();
-        }
-        // Half-way the S-curve has covered this much less than the straight line would have.
-        let hold = (duration - 2.0 * ramp).max(0.0);
-        let held = speed / (ramp + hold);
-        let turned = 2.0 * self.corner.half_turn_sine();
-        turned * (speed * speed / (8.0 * held) + held * ramp * ramp / 24.0)
     }
 }

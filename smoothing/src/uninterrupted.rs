@@ -4,7 +4,7 @@
 //! Source: sections 2.2.3 and 3.2, equations 2.34 to 2.44 and 3.5 to 3.9, in vector form: the motion
 //! is a cubic Bezier curve whose two inner control points are the corner. Not here: unequal speeds.
 
-use crate::turn::{Turn, TurnShape};
+use crate::turn::{Form, Turn, TurnShape};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, Limits, largest_multiple};
 use toolglide_profiles::{BlendError, Blender};
@@ -81,7 +81,7 @@ impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
                 acceleration,
                 reach: speed * duration / 3.0,
                 duration,
-                ramp: 0.0,
+                form: Form::Uninterrupted,
             },
             *corner,
         ))

@@ -1,0 +1,318 @@
+//! Overlapping corners: from the middle of one uninterrupted corner to the middle of the next.
+//!
+//! Source: section 3.3.2, equations 3.27 to 3.32. For a common duration each axis has one pair of
+//! jerks and one instant between them that join both middles, in closed form; the shortest duration
+//! that keeps every limit and the tolerance replaces the printed choice of equal halves, one of whose
+//! two roots leaves the path. Not here: which corners overlap.
+
+use crate::leg::Leg;
+use crate::turn::TurnShape;
+use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK};
+use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector};
+
+/// Durations tried, as shares of the distance over the mean speed.
+const SHORTEST: f64 = 0.6;
+const LONGEST: f64 = 1.8;
+/// Ratio of the durations tried.
+const RATIO: f64 = 1.05;
+/// Halvings between the last duration that fails and the first that fits.
+const HALVINGS: usize = 8;
+/// Parts into which a piece is cut where its Bezier points are compared with the leg.
+const PARTS: usize = 4;
+
+/// The state in the middle of a corner.
+#[derive(Clone, Copy, Debug)]
+struct Middle<const N: usize> {
+    position: Vector<N>,
+    velocity: Vector<N>,
+    acceleration: Vector<N>,
+}
+
+impl<const N: usize> Middle<N> {
+    fn of(
+        shape: &TurnShape,
+        point: &Vector<N>,
+        incoming: &Vector<N>,
+        outgoing: &Vector<N>,
+    ) -> Self {
+        let turned = outgoing - incoming;
+        Self {
+            position: point + turned * (0.125 * shape.reach),
+            velocity: (incoming + outgoing) * (0.25 * shape.speed),
+            acceleration: turned * (0.5 * shape.acceleration),
+        }
+    }
+}
+
+/// A leg between two corners, with the legs beside it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Between<'a, const N: usize> {
+    pub(crate) before: &'a Leg<N>,
+    pub(crate) leg: &'a Leg<N>,
+    pub(crate) after: &'a Leg<N>,
+}
+
+/// How one axis gets from middle to middle.
+#[derive(Clone, Copy, Debug)]
+struct TwoJerks {
+    /// Instant between the two, as a share of the duration.
+    switch: f64,
+    first: f64,
+    second: f64,
+}
+
+impl<const N: usize> Between<'_, N> {
+    /// The least duration found from the middle of one corner to the middle of the next, or `None`
+    /// when these two cannot overlap.
+    pub(crate) fn duration(
+        &self,
+        from: &TurnShape,
+        to: &TurnShape,
+        limits: &Limits<N>,
+    ) -> Option<f64> {
+        if !(from.is_uninterrupted() && to.is_uninterrupted()) {
+            return None;
+        }
+        let (start, end) = self.middles(from, to);
+        let distance = (end.position - start.position).norm();
+        let typical = 2.0 * distance / (start.velocity.norm() + end.velocity.norm());
+        if !typical.is_finite() {
+            return None;
+        }
+        let fits = |duration: f64| self.fits(&start, &end, duration, limits);
+        let mut duration = SHORTEST * typical;
+        let mut failed = 0.0;
+        while !fits(duration) {
+            failed = duration;
+            duration *= RATIO;
+            if duration > LONGEST * typical {
+                return None;
+            }
+        }
+        if failed > 0.0 {
+            let mut low = failed;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + duration);
+                if fits(middle) {
+                    duration = middle;
+                } else {
+                    low = middle;
+                }
+            }
+        }
+        Some(duration)
+    }
+
+    /// The motion from middle to middle over a duration that was found to fit.
+    pub(crate) fn pieces(
+        &self,
+        from: &TurnShape,
+        to: &TurnShape,
+        duration: f64,
+        mut take: impl FnMut(Piece<N>),
+    ) {
+        let (start, end) = self.middles(from, to);
+        let Some(axes) = solve(&start, &end, duration) else {
+            debug_assert!(false, "an overlap was chosen that does not exist");
+            return;
+        };
+        let serves = Serves {
+            first: self.before.serves.first,
+            last: self.after.serves.last,
+        };
+        for_each_part(&start, &axes, duration, |state, length, is_last| {
+            let mut piece_end = position_after(state, length);
+            if is_last {
+                piece_end = end.position;
+            }
+            take(Piece::new(state, length, piece_end, serves));
+            true
+        });
+    }
+
+    fn middles(&self, from: &TurnShape, to: &TurnShape) -> (Middle<N>, Middle<N>) {
+        let Self { before, leg, after } = self;
+        (
+            Middle::of(from, &leg.start, &before.direction, &leg.direction),
+            Middle::of(to, &leg.end, &leg.direction, &after.direction),
+        )
+    }
+
+    fn fits(&self, start: &Middle<N>, end: &Middle<N>, duration: f64, limits: &Limits<N>) -> bool {
+        let Some(axes) = solve(start, end, duration) else {
+            return false;
+        };
+        for (axis, jerks) in axes.iter().enumerate() {
+            let TwoJerks {
+                switch,
+                first,
+                second,
+            } = *jerks;
+            let bound = limits.jerk()[axis] * (1.0 - LIMIT_SLACK);
+            let apex = start.acceleration[axis] + first * switch * duration;
+            if first.abs() > bound
+                || second.abs() > bound
+                || apex.abs() > limits.acceleration()[axis] * (1.0 - LIMIT_SLACK)
+            {
+                return false;
+            }
+        }
+        let feedrate = self
+            .before
+            .feedrate
+            .min(self.leg.feedrate)
+            .min(self.after.feedrate)
+            * (1.0 - LIMIT_SLACK);
+        let room = self.leg.room().length() * (1.0 + CLOSURE);
+        let mut kept = true;
+        for_each_part(start, &axes, duration, |state, length, _| {
+            kept = self.part_fits(state, length, feedrate, room, limits);
+            kept
+        });
+        kept
+    }
+
+    /// Whether a part of constant jerk keeps the velocities and the tolerance.
+    fn part_fits(
+        &self,
+        state: &Sample<N>,
+        length: f64,
+        feedrate: f64,
+        room: f64,
+        limits: &Limits<N>,
+    ) -> bool {
+        // Bezier points of the velocity, a quadratic.
+        let middle = state.velocity + state.acceleration * (0.5 * length);
+        let last = state.velocity + (state.acceleration + state.jerk * (0.5 * length)) * length;
+        for velocity in [state.velocity, middle, last] {
+            let within = (0..N)
+                .all(|axis| velocity[axis].abs() <= limits.velocity()[axis] * (1.0 - LIMIT_SLACK));
+            if !within || velocity.norm() > feedrate {
+                return false;
+            }
+        }
+        let part = length / PARTS as f64;
+        let mut from = *state;
+        for _ in 0..PARTS {
+            let to = after(&from, part);
+            let points = [
+                from.position,
+                from.position + from.velocity * (part / 3.0),
+                to.position - to.velocity * (part / 3.0),
+                to.position,
+            ];
+            if points.iter().any(|point| self.off_leg(point) > room) {
+                return false;
+            }
+            from = to;
+        }
+        true
+    }
+
+    fn off_leg(&self, point: &Vector<N>) -> f64 {
+        let along = (point - self.leg.start)
+            .dot(&self.leg.direction)
+            .clamp(0.0, self.leg.length);
+        (point - self.leg.start - self.leg.direction * along).norm()
+    }
+}
+
+/// Two jerks for each axis, or `None` where an axis has none over this duration.
+#[allow(
+    clippy::many_single_char_names,
+    reason = "transcribed equations keep the letters of the text"
+)]
+fn solve<const N: usize>(
+    start: &Middle<N>,
+    end: &Middle<N>,
+    duration: f64,
+) -> Option<[TwoJerks; N]> {
+    let t = duration;
+    let mut axes = [TwoJerks {
+        switch: 0.5,
+        first: 0.0,
+        second: 0.0,
+    }; N];
+    for (i, axis) in axes.iter_mut().enumerate() {
+        let (s0, v0, a0) = (start.position[i], start.velocity[i], start.acceleration[i]);
+        let (s1, v1, a1) = (end.position[i], end.velocity[i], end.acceleration[i]);
+        // Mean jerks that the acceleration, the velocity and the position ask for.
+        let al = (a1 - a0) / t;
+        let be = 2.0 * (v1 - v0 - a0 * t) / (t * t);
+        let ga = 6.0 * (s1 - s0 - v0 * t - 0.5 * a0 * t * t) / (t * t * t);
+        let scale = al.abs() + be.abs() + ga.abs();
+        if (al - be).abs() <= CLOSURE * scale {
+            if (be - ga).abs() > CLOSURE * scale {
+                return None;
+            }
+            *axis = TwoJerks {
+                switch: 0.5,
+                first: al,
+                second: al,
+            };
+            continue;
+        }
+        let mu = (be - ga) / (al - be);
+        if !(mu > 0.0 && mu < 1.0) {
+            return None;
+        }
+        let d = (al - be) / (mu * (1.0 - mu));
+        let first = al - d * mu;
+        *axis = TwoJerks {
+            switch: 1.0 - mu,
+            first,
+            second: first + d,
+        };
+    }
+    Some(axes)
+}
+
+/// Runs through the parts of constant jerk: state at the start, length, and whether it is the last;
+/// stops when told `false`.
+fn for_each_part<const N: usize>(
+    start: &Middle<N>,
+    axes: &[TwoJerks; N],
+    duration: f64,
+    mut take: impl FnMut(&Sample<N>, f64, bool) -> bool,
+) {
+    let mut cuts = axes.map(|axis| axis.switch * duration);
+    cuts.sort_unstable_by(f64::total_cmp);
+    let mut state = Sample {
+        position: start.position,
+        velocity: start.velocity,
+        acceleration: start.acceleration,
+        jerk: Vector::zeros(),
+    };
+    let mut time = 0.0;
+    for cut in cuts.iter().copied().chain([duration]) {
+        let length = cut - time;
+        if length > CLOSURE * duration {
+            let middle = 0.5 * (time + cut);
+            for (axis, jerks) in axes.iter().enumerate() {
+                let is_first = middle < jerks.switch * duration;
+                state.jerk[axis] = if is_first { jerks.first } else { jerks.second };
+            }
+            let is_last = duration - cut <= CLOSURE * duration;
+            let length = if is_last { duration - time } else { length };
+            if !take(&state, length, is_last) || is_last {
+                return;
+            }
+            state = after(&state, length);
+            time = cut;
+        }
+    }
+}
+
+fn position_after<const N: usize>(state: &Sample<N>, time: f64) -> Vector<N> {
+    state.position
+        + (state.velocity + (state.acceleration * 0.5 + state.jerk * (time / 6.0)) * time) * time
+}
+
+fn after<const N: usize>(state: &Sample<N>, time: f64) -> Sample<N> {
+    Sample {
+        position: position_after(state, time),
+        velocity: state.velocity + (state.acceleration + state.jerk * (0.5 * time)) * time,
+        acceleration: state.acceleration + state.jerk * time,
+        jerk: state.jerk,
+    }
+}
