@@ -1,12 +1,10 @@
 //! Distance from an arc, which may climb and whose radius may change.
 //!
-//! Source: the foot of the perpendicular by Newton's method from the angle of the point; over a
-//! whole curve, the remainder of linear interpolation, `max|f''|/8`, applied twice. Not here:
-//! lines, whose distance is convex.
+//! Source: the foot of the perpendicular by Newton's method from the angle of the point. Not here:
+//! the distance of a whole curve.
 
 use std::f64::consts::TAU;
 
-use super::bernstein::Cubic;
 use crate::arc::Arc;
 use crate::vector::Vector;
 
@@ -23,13 +21,16 @@ const CLOSE: f64 = 0.1;
 const SURVEYED_TURNS: f64 = 4.0;
 const SURVEY_POINTS: u32 = 96;
 
+/// How often the neighbourhood of a local minimum loses a third; Newton's method does the rest.
+const NARROWING_STEPS: u32 = 30;
+
 /// Largest part of a turn between two waypoints, of a whole turn.
 const WAYPOINT_SPACING: f64 = TAU / 3.0;
 
 /// An arc, prepared for many questions.
 #[derive(Clone, Debug)]
 pub(super) struct Helix<const N: usize> {
-    arc: Arc<N>,
+    pub(super) arc: Arc<N>,
     center: Vector<N>,
     radial: Vector<N>,
     lateral: Vector<N>,
@@ -38,18 +39,18 @@ pub(super) struct Helix<const N: usize> {
     growth: f64,
     sweep: f64,
     /// Bounds of the second, third and fourth derivative by the share of the sweep.
-    bends: [f64; 3],
+    pub(super) bends: [f64; 3],
 }
 
 /// The arc at one share of its sweep: position relative to a point, first and second derivative.
-struct Foot<const N: usize> {
-    offset: Vector<N>,
-    slope: Vector<N>,
-    bend: Vector<N>,
+pub(super) struct Foot<const N: usize> {
+    pub(super) offset: Vector<N>,
+    pub(super) slope: Vector<N>,
+    pub(super) bend: Vector<N>,
 }
 
 /// A point in the frame of the arc.
-struct Local<const N: usize> {
+pub(super) struct Local<const N: usize> {
     x: f64,
     y: f64,
     height: Vector<N>,
@@ -141,50 +142,7 @@ impl<const N: usize> Helix<N> {
         best
     }
 
-    /// Bernstein coefficients of a cubic that is nowhere below the distance of the curve.
-    pub(super) fn majorant(&self, curve: &Cubic<N>) -> [f64; 4] {
-        let middle = curve.at(0.5);
-        let (share, _) = self.nearest(&middle);
-        let foot = self.at(share, &self.local(&middle));
-        let half_step = 0.5 * advance(&foot, &curve.slope(0.5));
-        let [first, _, _, last] = &curve.points;
-        let (from, to) = (self.local(first), self.local(last));
-        let s0 = self.foot((share - half_step).clamp(0.0, 1.0), &from);
-        let s1 = self.foot((share + half_step).clamp(0.0, 1.0), &to);
-        let (start, end) = (self.at(s0, &from), self.at(s1, &to));
-        // A cubic s(u) that stays within the arc and keeps beside the curve.
-        let b1 = (s0 + advance(&start, &curve.slope(0.0)) / 3.0).clamp(0.0, 1.0);
-        let b2 = (s1 - advance(&end, &curve.slope(1.0)) / 3.0).clamp(0.0, 1.0);
-        let slopes = [3.0 * (b1 - s0), 3.0 * (b2 - b1), 3.0 * (s1 - b2)];
-        let bends = [6.0 * (b2 - 2.0 * b1 + s0), 6.0 * (s1 - 2.0 * b2 + b1)];
-        let twist = bends[1] - bends[0];
-        let error_bend = |foot: &Foot<N>, bend: Vector<N>, slope: f64, s_bend: f64| {
-            (bend - foot.bend * (slope * slope) - foot.slope * s_bend).norm()
-        };
-        let error_bends = [
-            error_bend(&start, curve.bend(0.0), slopes[0], bends[0]),
-            error_bend(&end, curve.bend(1.0), slopes[2], bends[1]),
-        ];
-        let speed = slopes
-            .iter()
-            .fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        let change = bends[0].abs().max(bends[1].abs());
-        let [q2, q3, q4] = self.bends;
-        let fourth = q4 * speed.powi(4)
-            + 6.0 * q3 * speed * speed * change
-            + q2 * (3.0 * change * change + 4.0 * speed * twist.abs());
-        let bend = error_bends[0].max(error_bends[1]) + fourth / 8.0;
-        let (e0, e1) = (start.offset.norm(), end.offset.norm());
-        let quadratic = [e0, 0.5 * (e0 + e1) + 0.25 * bend, e1];
-        [
-            e0,
-            (quadratic[0] + 2.0 * quadratic[1]) / 3.0,
-            (2.0 * quadratic[1] + quadratic[2]) / 3.0,
-            e1,
-        ]
-    }
-
-    fn local(&self, point: &Vector<N>) -> Local<N> {
+    pub(super) fn local(&self, point: &Vector<N>) -> Local<N> {
         let offset = point - self.center;
         let (x, y) = (offset.dot(&self.radial), offset.dot(&self.lateral));
         Local {
@@ -194,7 +152,7 @@ impl<const N: usize> Helix<N> {
         }
     }
 
-    fn at(&self, share: f64, local: &Local<N>) -> Foot<N> {
+    pub(super) fn at(&self, share: f64, local: &Local<N>) -> Foot<N> {
         let (sine, cosine) = (share * self.sweep).sin_cos();
         let outward = self.radial * cosine + self.lateral * sine;
         let along = self.lateral * cosine - self.radial * sine;
@@ -227,23 +185,49 @@ impl<const N: usize> Helix<N> {
         best
     }
 
-    /// The nearest of many points of the arc, on the turns about a share of its sweep.
+    /// The nearest point on the turns about a share of the sweep, for a point that is not close:
+    /// every local minimum among many points is narrowed down, because near the evolute there are
+    /// several and Newton's method fails.
     fn survey(&self, about: f64, local: &Local<N>) -> f64 {
         let reach = (SURVEYED_TURNS * TAU / self.sweep.abs()).min(1.0);
         let from = (about - 0.5 * reach).clamp(0.0, 1.0 - reach);
-        let mut best = (about, f64::INFINITY);
+        let share = |k: u32| from + reach * f64::from(k) / f64::from(SURVEY_POINTS);
+        let mut best = (from, f64::INFINITY);
+        let (mut before, mut here) = (f64::INFINITY, self.away(share(0), local));
         for k in 0..=SURVEY_POINTS {
-            let share = from + reach * f64::from(k) / f64::from(SURVEY_POINTS);
-            let distance = self.away(share, local);
-            if distance < best.1 {
-                best = (share, distance);
+            let after = if k < SURVEY_POINTS {
+                self.away(share(k + 1), local)
+            } else {
+                f64::INFINITY
+            };
+            if here <= before && here <= after {
+                let between = (share(k.saturating_sub(1)), share(k + 1).min(1.0));
+                let narrowed = self.narrow(between, local);
+                let distance = self.away(narrowed, local);
+                if distance < best.1 {
+                    best = (narrowed, distance);
+                }
             }
+            (before, here) = (here, after);
         }
         best.0
     }
 
+    /// The lowest point of a valley.
+    fn narrow(&self, (mut low, mut high): (f64, f64), local: &Local<N>) -> f64 {
+        for _ in 0..NARROWING_STEPS {
+            let third = (high - low) / 3.0;
+            if self.away(low + third, local) < self.away(high - third, local) {
+                high -= third;
+            } else {
+                low += third;
+            }
+        }
+        0.5 * (low + high)
+    }
+
     /// Foot of the perpendicular that Newton's method reaches from a guess.
-    fn foot(&self, guess: f64, local: &Local<N>) -> f64 {
+    pub(super) fn foot(&self, guess: f64, local: &Local<N>) -> f64 {
         let mut share = guess;
         for _ in 0..FOOT_STEPS {
             let foot = self.at(share, local);
@@ -260,16 +244,5 @@ impl<const N: usize> Helix<N> {
             }
         }
         share
-    }
-}
-
-/// How fast the foot advances while the point moves with `velocity`.
-fn advance<const N: usize>(foot: &Foot<N>, velocity: &Vector<N>) -> f64 {
-    let curvature = foot.slope.norm_squared() + foot.offset.dot(&foot.bend);
-    let rate = velocity.dot(&foot.slope) / curvature;
-    if curvature > 0.0 && rate.is_finite() {
-        rate
-    } else {
-        0.0
     }
 }

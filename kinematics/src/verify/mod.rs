@@ -22,6 +22,7 @@ mod dynamics;
 mod helix;
 mod judge;
 mod leg;
+mod majorant;
 mod record;
 mod report;
 mod route;
