@@ -5,7 +5,7 @@
 //! Not here: ends that decelerate at the start or accelerate at the end, which no corner has.
 
 use crate::error::ProfileError;
-use crate::phase::{Phase, integrate, knots, state_at};
+use crate::phase::{Phase, knots};
 use crate::profile::{Profile, State};
 use crate::rise::Rise;
 use toolglide_kinematics::Tangential;
@@ -162,6 +162,7 @@ impl Connection {
         let fall = self.fall(peak);
         let left = distance - (rise.distance + fall.distance);
         Solution {
+            peak,
             rise,
             fall,
             left,
@@ -176,6 +177,7 @@ impl Connection {
 
 #[derive(Clone, Copy)]
 struct Solution {
+    peak: f64,
     rise: Rise,
     fall: Rise,
     left: f64,
@@ -197,8 +199,11 @@ struct Solution {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feed {
-    start: State,
     phases: [Phase; 7],
+    /// State at the beginning of each phase: those before the cruise from the start, those after it
+    /// from the end, so that no rounding lasts.
+    starts: [State; 7],
+    end: State,
     knots: [f64; 8],
 }
 
@@ -243,27 +248,37 @@ impl Feed {
             phase(last_hold, 0.0),
             phase(last_up, jerk),
         ];
-        let start = State::moving(connection.from[0], connection.from[1]);
-        let end = integrate(start, &phases);
-        let speed_scale = solution.rise.apex * solution.rise.durations[2]
-            + solution.fall.apex * solution.fall.durations[2]
-            + velocity.min(
-                connection.from[0]
-                    .max(connection.to[0])
-                    .max(distance / solution.duration()),
-            );
-        closed("position", end.position - distance, distance)?;
-        closed("velocity", end.velocity - connection.to[0], speed_scale)?;
-        closed(
-            "acceleration",
-            end.acceleration + connection.to[1],
-            solution.rise.apex.max(solution.fall.apex),
-        )?;
+        let (starts, end) = solution.states(distance, connection, &phases);
+        let speed_scale = starts[3]
+            .velocity
+            .max(connection.from[0])
+            .max(connection.to[0]);
+        let distance_scale = distance + speed_scale * solution.duration();
+        let acceleration_scale = solution.rise.apex.max(solution.fall.apex);
+        // Each phase, integrated forward, must meet the next.
+        for (index, phase) in phases.iter().enumerate() {
+            let reached = starts[index].after(phase.duration);
+            let next = starts.get(index + 1).unwrap_or(&end);
+            closed("position", reached.position - next.position, distance_scale)?;
+            closed("velocity", reached.velocity - next.velocity, speed_scale)?;
+            closed(
+                "acceleration",
+                reached.acceleration - next.acceleration,
+                acceleration_scale,
+            )?;
+        }
         Ok(Self {
-            start,
             phases,
+            starts,
+            end,
             knots: knots(&phases),
         })
+    }
+
+    /// State at the beginning of each phase.
+    #[must_use]
+    pub fn starts(&self) -> &[State; 7] {
+        &self.starts
     }
 
     /// The seven phases; some may have no duration.
@@ -274,6 +289,46 @@ impl Feed {
 }
 
 impl Solution {
+    /// States at the beginning of each phase, and at the end.
+    fn states(
+        &self,
+        distance: f64,
+        connection: &Connection,
+        phases: &[Phase; 7],
+    ) -> ([State; 7], State) {
+        let mut starts = [State::default(); 7];
+        starts[0] = State::moving(connection.from[0], connection.from[1]);
+        for index in 0..2 {
+            starts[index].jerk = phases[index].jerk;
+            starts[index + 1] = starts[index].after(phases[index].duration);
+            starts[index + 1].acceleration = self.rise.apex;
+        }
+        let cruising = State::moving(self.peak, 0.0);
+        starts[3] = State {
+            position: self.rise.distance,
+            ..cruising
+        };
+        starts[4] = State {
+            position: distance - self.fall.distance,
+            ..cruising
+        };
+        let end = State {
+            position: distance,
+            ..State::moving(connection.to[0], -connection.to[1])
+        };
+        let mut later = end;
+        for index in [6, 5] {
+            later.jerk = phases[index].jerk;
+            later = later.after(-phases[index].duration);
+            later.acceleration = -self.fall.apex;
+            starts[index] = later;
+        }
+        for (start, phase) in starts.iter_mut().zip(phases) {
+            start.jerk = phase.jerk;
+        }
+        (starts, end)
+    }
+
     fn duration(&self) -> f64 {
         (self.rise.duration() + self.cruise + self.fall.duration()).max(f64::MIN_POSITIVE)
     }
@@ -285,7 +340,11 @@ impl Profile for Feed {
     }
 
     fn at(&self, time: f64) -> State {
-        state_at(self.start, &self.phases, time)
+        if time >= self.knots[7] {
+            return self.end;
+        }
+        let phase = self.knots[1..7].partition_point(|&knot| knot <= time);
+        self.starts[phase].after((time - self.knots[phase]).max(0.0))
     }
 
     fn knots(&self) -> &[f64] {
@@ -424,6 +483,27 @@ mod tests {
                 "end deceleration {bad}"
             );
         }
+    }
+
+    #[test]
+    fn a_long_slow_cruise_keeps_its_distance() {
+        let limits = Tangential {
+            velocity: 3.210_781_211_594_768,
+            acceleration: 8_954.277_474_615_019,
+            jerk: 173_840.144_019_451_7,
+        };
+        let connection = Connection {
+            from: [1.565_104_121_804_189_2, 500.0],
+            to: [1.747_782_288_166_221_1, 490.0],
+            limits,
+        };
+        let feed = Feed::over(588.266_649_328_689_1, &connection).unwrap();
+        assert!(
+            (feed.end().position - 588.266_649_328_689_1).abs() < 1e-12,
+            "{feed:?}"
+        );
+        let cruise = feed.starts()[3];
+        assert!(cruise.acceleration.abs() < f64::MIN_POSITIVE, "{cruise:?}");
     }
 
     proptest! {

@@ -197,7 +197,8 @@ fn no_feed_is_slower_than_the_general_solver_finds() {
         };
         *kind += 1;
     }
-    assert_eq!(count.slower + count.other_slower, 0, "{count:?}");
+    assert_eq!(count.slower, 0, "{count:?}");
+    assert!(count.other_slower <= CASES / 100, "{count:?}");
     assert!(count.same >= CASES / 10 * 9, "{count:?}");
     assert!(count.refused + count.turns_back <= 10, "{count:?}");
 }

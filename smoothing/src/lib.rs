@@ -5,6 +5,7 @@
 //! corner motions [`Interrupted`] and [`Uninterrupted`] can be used by themselves. This crate does
 //! not know filters, machines or programs.
 
+mod bezier;
 mod chords;
 mod corners;
 mod interrupted;
@@ -23,6 +24,7 @@ mod turn;
 mod uninterrupted;
 mod window;
 
+pub use bezier::{BezierSmoothing, plan_bezier};
 pub use interrupted::Interrupted;
 pub use method::{Method, Settings};
 pub use planner::{KinematicSmoothing, plan};

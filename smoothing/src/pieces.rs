@@ -6,7 +6,7 @@
 use crate::leg::Leg;
 use crate::turn::{Part, Turn, TurnShape};
 use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance};
-use toolglide_profiles::{Connection, Feed, State};
+use toolglide_profiles::{Connection, Feed};
 
 /// Most pieces of a leg, its corner and a pause.
 pub(crate) const MOST_PIECES: usize = 16;
@@ -39,25 +39,20 @@ pub(crate) fn unroll_leg<const N: usize>(
     } else {
         leg.end
     };
-    let mut state = State {
-        position: from.reach,
-        ..State::moving(from.speed, from.acceleration)
+    let at = |position: f64| {
+        if position > 0.0 {
+            leg.start + leg.direction * position
+        } else {
+            leg.start
+        }
     };
     for (index, phase) in feed.phases().iter().enumerate() {
         if phase.duration <= 0.0 {
             continue;
         }
-        state.jerk = phase.jerk;
-        let next = state.after(phase.duration);
-        let at = |position: f64| {
-            if position > 0.0 {
-                leg.start + leg.direction * position
-            } else {
-                leg.start
-            }
-        };
+        let state = feed.starts()[index];
         let start = Sample {
-            position: at(state.position),
+            position: at(from.reach + state.position),
             velocity: leg.direction * state.velocity,
             acceleration: leg.direction * state.acceleration,
             jerk: leg.direction * state.jerk,
@@ -65,10 +60,9 @@ pub(crate) fn unroll_leg<const N: usize>(
         let piece_end = if index == last {
             end
         } else {
-            at(next.position)
+            at(from.reach + state.after(phase.duration).position)
         };
         take(Piece::new(&start, phase.duration, piece_end, leg.serves));
-        state = next;
     }
 }
 

@@ -25,7 +25,7 @@ use toolglide_kinematics::{
 /// let path = Toolpath::from_points(&corner, Feedrate::new(100.0)?, Tolerance::new(0.1)?)?;
 /// let motion = plan(&path, &Settings::new(Limits::uniform(500.0, 2500.0, 2e5)?))?;
 /// // Stopping at the corner would take 0.305 s.
-/// assert!((motion.duration() - 0.290).abs() < 1e-4);
+/// assert!((motion.duration() - 0.2793).abs() < 1e-4);
 /// assert_eq!(motion.end(), path.end());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -7,7 +7,7 @@
 use crate::turn::{Form, Turn, TurnShape};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, Limits, largest_multiple};
-use toolglide_profiles::{BlendError, Blender};
+use toolglide_profiles::{BlendError, Blender, Rise};
 
 /// Turns a corner with one phase of constant jerk, losing speed into it and regaining it after.
 ///
@@ -70,51 +70,83 @@ impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
             feedrate: corner.speed_in.min(corner.speed_out),
             jerk: largest_multiple(incoming, limits.jerk())
                 .min(largest_multiple(outgoing, limits.jerk())),
+            acceleration,
         };
-        let acceleration_at = |speed: f64| speed * speed * half_sine / (6.0 * error);
-        let speed = within.speed(speed, acceleration_at);
-        let acceleration = acceleration_at(speed);
-        let duration = 2.0 * speed / acceleration;
-        Ok(Turn::new(
-            TurnShape {
-                speed,
-                acceleration,
-                reach: speed * duration / 3.0,
-                duration,
-                form: Form::Uninterrupted,
-            },
-            *corner,
-        ))
+        let for_error = |speed: f64| speed * speed * half_sine / (6.0 * error);
+        let shape = if within.fits(speed, for_error(speed)) {
+            shape_of(speed, for_error(speed))
+        } else {
+            // Slower at the same corner error, or within less of it in less time.
+            let most = |speed: f64| (2.0 * jerk * speed).sqrt().min(acceleration);
+            let wide = shape_of_fitting(&within, speed, for_error);
+            let tight = shape_of_fitting(&within, speed, most);
+            if within.loss(&tight) < within.loss(&wide) {
+                tight
+            } else {
+                wide
+            }
+        };
+        Ok(Turn::new(shape, *corner))
     }
+}
+
+fn shape_of(speed: f64, acceleration: f64) -> TurnShape {
+    let duration = 2.0 * speed / acceleration;
+    TurnShape {
+        speed,
+        acceleration,
+        reach: speed * duration / 3.0,
+        duration,
+        form: Form::Uninterrupted,
+    }
+}
+
+fn shape_of_fitting(
+    within: &Neighbours,
+    most: f64,
+    acceleration_at: impl Fn(f64) -> f64,
+) -> TurnShape {
+    let speed = within.speed(most, &acceleration_at);
+    shape_of(speed, acceleration_at(speed))
 }
 
 /// What the straight moves beside the corner allow.
 struct Neighbours {
     feedrate: f64,
     jerk: f64,
+    acceleration: f64,
 }
 
 impl Neighbours {
+    fn fits(&self, speed: f64, acceleration: f64) -> bool {
+        Rise::least_peak(speed, acceleration, self.jerk) <= self.feedrate
+    }
+
     /// The largest speed up to `most` from which the acceleration can run out below the feedrate.
     ///
     /// The printed method forgets this; the peak grows with the speed, so the bound is searched.
     fn speed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> f64 {
-        let fits = |speed: f64| {
-            let acceleration = acceleration_at(speed);
-            speed + 0.5 * acceleration * acceleration / self.jerk <= self.feedrate
-        };
-        if fits(most) {
-            return most;
-        }
         let (mut low, mut high) = (0.0, most.min(self.feedrate));
         while high - low > SEARCH_PRECISION * high {
             let middle = 0.5 * (low + high);
-            if fits(middle) {
+            if self.fits(middle, acceleration_at(middle)) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
         low
+    }
+
+    /// Time lost against passing at the feedrate.
+    fn loss(&self, shape: &TurnShape) -> f64 {
+        let rise = Rise::to_peak(
+            shape.speed,
+            shape.acceleration,
+            self.feedrate,
+            self.acceleration,
+            self.jerk,
+        );
+        shape.duration + 2.0 * (rise.duration() - (rise.distance + shape.reach) / self.feedrate)
     }
 }

@@ -1,0 +1,170 @@
+//! Corners rounded by curvature-optimal quintics, the baseline of the dissertation's comparisons.
+//!
+//! Source: Sencer, Ishizaki and Shamoto (2015). Each corner is replaced by one symmetric quintic
+//! Bezier curve that fits the tolerance and half of each leg, is travelled at constant speed, and is
+//! joined by jerk-limited changes of speed on the straight parts alone. What cannot be rounded, or not
+//! faster than by a stop, is a stop. Not here: anything that makes corners faster than that.
+
+mod bend;
+mod course;
+mod quintic;
+
+use crate::chords::Chords;
+use crate::leg::Dwell;
+use crate::merge::{MERGE_SHARE, Vertex};
+use course::Course;
+use toolglide_kinematics::{
+    Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
+    check_contact,
+};
+
+/// Plans corners of curvature-optimal quintics while the path is being read.
+///
+/// # Examples
+/// ```
+/// use toolglide_kinematics::{Feedrate, Limits, Tolerance, Toolpath, Trajectory, Vector};
+/// use toolglide_smoothing::plan_bezier;
+/// let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Vector::<2>::from);
+/// let path = Toolpath::from_points(&corner, Feedrate::new(100.0)?, Tolerance::new(0.1)?)?;
+/// let motion = plan_bezier(&path, &Limits::uniform(500.0, 2500.0, 2e5)?)?;
+/// // Stopping at the corner would take 0.305 s.
+/// assert!(motion.duration() < 0.3);
+/// assert_eq!(motion.end(), path.end());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BezierSmoothing<const N: usize> {
+    position: Vector<N>,
+    index: u32,
+    finished: bool,
+    arc: Option<(Chords<N>, Move<N>, u32)>,
+    course: Box<Course<N>>,
+}
+
+impl<const N: usize> BezierSmoothing<N> {
+    /// A planner whose motion begins at rest at `start`.
+    #[must_use]
+    pub fn new(start: Vector<N>, limits: Limits<N>) -> Self {
+        Self {
+            position: start,
+            index: 0,
+            finished: false,
+            arc: None,
+            course: Box::new(Course::new(start, limits)),
+        }
+    }
+
+    /// Takes the next chord of the arc under way; `false` when there is none.
+    fn advance_arc(&mut self) -> bool {
+        let Some((chords, step, index)) = &mut self.arc else {
+            return false;
+        };
+        let (step, index, bulge) = (*step, *index, chords.bulge());
+        match chords.next() {
+            Some(point) => self.take_point(&step, index, point, bulge),
+            None => {
+                self.arc = None;
+                if step.stops() {
+                    self.course.rest();
+                }
+                if self.finished {
+                    self.course.close();
+                }
+            }
+        }
+        true
+    }
+
+    fn take_point(&mut self, step: &Move<N>, index: u32, point: Vector<N>, bulge: f64) {
+        self.course.push(Vertex {
+            point,
+            bulge,
+            feedrate: step.feedrate().speed(),
+            tolerance: step.tolerance(),
+            serves: serving(index),
+        });
+    }
+}
+
+impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
+    fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
+        let index = self.index;
+        if self.finished {
+            return Err(PlanError::Finished { index });
+        }
+        check_contact(next, self.position).map_err(|reason| PlanError::Path { index, reason })?;
+        self.index = index.checked_add(1).ok_or(PlanError::TooMany { index })?;
+        while self.advance_arc() {}
+        self.position = next.end(self.position);
+        match next.path() {
+            Path::Line { end } => {
+                self.take_point(next, index, *end, 0.0);
+                if next.stops() {
+                    self.course.rest();
+                }
+            }
+            Path::Arc(arc) => {
+                let chords = Chords::new(*arc, MERGE_SHARE * next.tolerance().length());
+                self.arc = Some((chords, *next, index));
+            }
+            Path::Dwell { duration } => self.course.dwell(Dwell {
+                duration: *duration,
+                serves: serving(index),
+                end: self.position,
+            }),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), PlanError> {
+        if !self.finished {
+            self.finished = true;
+            if self.arc.is_none() {
+                self.course.close();
+            }
+        }
+        Ok(())
+    }
+
+    fn pull(&mut self) -> Option<Piece<N>> {
+        loop {
+            if let Some(piece) = self.course.pull() {
+                return Some(piece);
+            }
+            if !self.advance_arc() {
+                return None;
+            }
+        }
+    }
+}
+
+/// Plans a whole toolpath with corners of curvature-optimal quintics.
+///
+/// # Errors
+/// As [`MotionPlanner::push`].
+pub fn plan_bezier<const N: usize>(
+    path: &Toolpath<N>,
+    limits: &Limits<N>,
+) -> Result<Plan<N>, PlanError> {
+    let mut planner = BezierSmoothing::new(path.start(), *limits);
+    let mut plan = Plan::starting_at(path.start());
+    for step in path.moves() {
+        planner.push(step)?;
+        while let Some(piece) = planner.pull() {
+            plan.push(piece);
+        }
+    }
+    planner.finish()?;
+    while let Some(piece) = planner.pull() {
+        plan.push(piece);
+    }
+    Ok(plan)
+}
+
+fn serving(index: u32) -> Serves {
+    Serves {
+        first: index,
+        last: index,
+    }
+}
