@@ -142,7 +142,8 @@ impl<const N: usize> Corners<N> {
         if let Some(last) = self.pending.take() {
             let link = link_of(&last);
             self.legs.push_back(last);
-            self.lattice.push(&link, &[TurnShape::STOP], |_, _| None);
+            self.lattice
+                .push(&link, &[TurnShape::STOP], &[], |_, _| None);
             self.offered += 1;
             self.lattice.finish();
         }
@@ -204,8 +205,14 @@ impl<const N: usize> Corners<N> {
             let next = self.legs.get(self.offered + 1).or(self.pending.as_ref());
             if leg.stop {
                 count = 0;
-            } else if let (Some(selection), Some(next)) = (self.selections.first(), next)
-                && !self.overlapping.is_empty()
+            }
+            if self.stops_allowed || leg.stop {
+                candidates[count] = TurnShape::STOP;
+                count += 1;
+            }
+            let safe = count;
+            if let (Some(selection), Some(next)) = (self.selections.first(), next)
+                && !(leg.stop || self.overlapping.is_empty())
             {
                 let corner = corner_between(leg, next, corner_tolerance(leg, next));
                 let reach = 4.0 * corner.tolerance.length() / corner.half_turn_sine();
@@ -218,20 +225,21 @@ impl<const N: usize> Corners<N> {
                     }
                 }
             }
-            if self.stops_allowed || leg.stop {
-                candidates[count] = TurnShape::STOP;
-                count += 1;
-            }
             let link = link_of(leg);
             let last = self.last_offered.as_ref();
-            self.lattice.push(&link, &candidates[..count], |from, to| {
-                let between = Between {
-                    before: last?,
-                    leg,
-                    after: next?,
-                };
-                between.duration(from, to, &self.limits)
-            });
+            self.lattice.push(
+                &link,
+                &candidates[..safe],
+                &candidates[safe..count],
+                |from, to| {
+                    let between = Between {
+                        before: last?,
+                        leg,
+                        after: next?,
+                    };
+                    between.duration(from, to, &self.limits)
+                },
+            );
             self.last_offered = Some(*leg);
             self.offered += 1;
         }

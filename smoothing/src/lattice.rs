@@ -31,6 +31,8 @@ struct Column {
     /// Duration of the overlap in which the corner is reached; zero when it is reached on the move.
     overlaps: [f64; MOST_CANDIDATES],
     count: usize,
+    /// How many of the candidates, the first ones, can always be followed by another.
+    safe: usize,
 }
 
 /// The motion chosen for a corner.
@@ -77,6 +79,7 @@ impl Lattice {
         self.columns.clear();
         let mut first = Column::empty();
         first.offer(TurnShape::STOP);
+        first.safe = 1;
         first.costs[0] = 0.0;
         self.columns.push_back(first);
         self.chosen.clear();
@@ -85,15 +88,21 @@ impl Lattice {
         self.time_to_stop = 0.0;
     }
 
-    /// Takes a move and the candidates of the corner at its end; `overlap` gives the duration from the
+    /// Takes a move and the candidates of the corner at its end, first those that can always be followed
+    /// by another (at least one), then those that may lead into a dead end; `overlap` gives the duration from the
     /// middle of one corner to the middle of the next where they can overlap.
     pub(crate) fn push(
         &mut self,
         link: &Link,
+        safe: &[TurnShape],
         candidates: &[TurnShape],
         overlap: impl Fn(&TurnShape, &TurnShape) -> Option<f64>,
     ) {
         let mut column = Column::empty();
+        for candidate in safe {
+            column.offer(*candidate);
+        }
+        column.safe = column.count;
         for candidate in candidates {
             column.offer(*candidate);
         }
@@ -223,6 +232,7 @@ impl Column {
             origins: [0; MOST_CANDIDATES],
             overlaps: [0.0; MOST_CANDIDATES],
             count: 0,
+            safe: 0,
         }
     }
 
@@ -235,16 +245,16 @@ impl Column {
         }
     }
 
-    /// The stop, unless it was given up or is not offered; the cheapest otherwise.
+    /// The stop, unless it was given up or is not offered; the cheapest safe one otherwise.
     fn stop(&self) -> usize {
-        (0..self.count)
+        (0..self.safe)
             .find(|&candidate| {
                 self.shapes[candidate].is_stop() && self.costs[candidate].is_finite()
             })
             .unwrap_or_else(|| self.cheapest())
     }
 
-    /// Gives up what lies behind the cheapest by more than a time.
+    /// Gives up what lies behind the cheapest safe one by more than a time.
     fn give_up(&mut self, behind: f64) {
         let most = self.costs[self.cheapest()] + behind;
         for cost in &mut self.costs[..self.count] {
@@ -254,9 +264,10 @@ impl Column {
         }
     }
 
+    /// The cheapest of those that can always be followed by another.
     fn cheapest(&self) -> usize {
         let mut best = 0;
-        for candidate in 1..self.count {
+        for candidate in 1..self.safe {
             if self.costs[candidate] < self.costs[best] {
                 best = candidate;
             }

@@ -17,9 +17,9 @@ use toolglide_profiles::Connection;
 /// Pieces of one corner: its parts, and one on each straight side.
 pub(super) const PIECES: usize = PARTS + 2;
 
-/// Share of each leg that one corner may use; what the two corners of a leg leave is for changes of
-/// speed.
-const LEG_SHARE: f64 = 0.49;
+/// Share of each leg that one corner may use. With a half, corners on short legs would touch, and the
+/// speed of the first one, which is slow, would stay for all.
+const LEG_SHARE: f64 = 0.4;
 
 /// Share of the tolerance that a corner uses: all of it, less rounding.
 const TOLERANCE_SHARE: f64 = 1.0 - 1e-6;
@@ -96,15 +96,15 @@ impl Bend {
         let unit_reach = bend.offsets[0][0] + 1.0;
         let widest = TOLERANCE_SHARE * corner.tolerance.length() / bend.unit_error(half_sine);
         let longest = LEG_SHARE * lengths[0].min(lengths[1]) / unit_reach;
-        let enough = (speed / by_acceleration)
-            .powi(2)
-            .max((speed / by_jerk).powf(1.5))
+        let [share, sharpness] = [speed / by_acceleration, speed / by_jerk];
+        let enough = (share * share)
+            .max(sharpness * sharpness.sqrt())
             .max(SMALLEST / unit_reach);
         bend.spacing = widest.min(longest).min(enough);
         bend.reach = unit_reach * bend.spacing;
         bend.speed = speed
             .min(by_acceleration * bend.spacing.sqrt())
-            .min(by_jerk * bend.spacing.powf(2.0 / 3.0));
+            .min(by_jerk * bend.spacing.cbrt().powi(2));
         if bend.is_faster_than_a_stop(bend.speed, legs) {
             bend
         } else {

@@ -11,7 +11,7 @@ use crate::pieces::{MOST_PIECES, corner_between, unroll_leg};
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Piece, Vector};
+use toolglide_kinematics::{Limits, Piece, Serves, Vector};
 
 /// Corners that the look-ahead window sees.
 const WINDOW: usize = 256;
@@ -175,7 +175,7 @@ impl<const N: usize> Course<N> {
         }
         if let Some(next) = next {
             let corner = corner_between(&leg, next, leg.room().min(next.room()));
-            let serves = toolglide_kinematics::Serves {
+            let serves = Serves {
                 first: leg.serves.first,
                 last: next.serves.last,
             };

@@ -26,9 +26,9 @@ use toolglide_kinematics::{
 /// use toolglide_smoothing::plan_bezier;
 /// let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Vector::<2>::from);
 /// let path = Toolpath::from_points(&corner, Feedrate::new(100.0)?, Tolerance::new(0.1)?)?;
-/// let motion = plan_bezier(&path, &Limits::uniform(500.0, 2500.0, 2e5)?)?;
-/// // Stopping at the corner would take 0.305 s.
-/// assert!(motion.duration() < 0.3);
+/// let motion = plan_bezier(&path, &Limits::uniform(500.0, 2500.0, 2e6)?)?;
+/// // Stopping at the corner would take 0.2825 s.
+/// assert!(motion.duration() < 0.28);
 /// assert_eq!(motion.end(), path.end());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -128,8 +128,7 @@ impl Quintic {
         let along = |share: f64| {
             let rest = 1.0 - share;
             let square = rest * rest;
-            5.0 * square
-                * (self.ratio * rest * (rest + 4.0 * share) + 6.0 * share * share)
+            5.0 * square * (self.ratio * rest * (rest + 4.0 * share) + 6.0 * share * share)
         };
         [-along(share), along(1.0 - share)]
     }
@@ -145,7 +144,10 @@ impl Quintic {
         let [incoming, outgoing] = self.first(share);
         let straight = outgoing - incoming;
         let turned = 4.0 * self.half_sine * self.half_sine * incoming * outgoing;
-        (straight * straight + turned).max(0.0).sqrt().max(f64::MIN_POSITIVE)
+        (straight * straight + turned)
+            .max(0.0)
+            .sqrt()
+            .max(f64::MIN_POSITIVE)
     }
 
     fn length(&self, from: f64, to: f64) -> f64 {
