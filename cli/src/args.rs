@@ -24,6 +24,10 @@ pub(crate) enum Command {
     Plan(PlanArgs),
     /// Judge set-points, whoever made them, against a program and the limits of a machine.
     Verify(VerifyArgs),
+    /// Plan a part program by every method and show them side by side.
+    Compare(CompareArgs),
+    /// Plan the examples of the dissertation and compare with what it prints.
+    Reproduce(ReproduceArgs),
     /// List the machines there are, or describe one.
     Machines(MachinesArgs),
     /// Print completions for a shell.
@@ -83,6 +87,30 @@ pub(crate) struct PlanArgs {
     /// Draw the motion; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to compare.
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods, as in kcs,exact-stop [default: all].
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
+    pub(crate) methods: Vec<String>,
+    /// Draw the feedrates of the methods; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to reproduce.
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    /// One section, figure or table [default: all].
+    pub(crate) name: Option<String>,
+    /// Print a JSON array instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// What to judge.

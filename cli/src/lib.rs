@@ -5,6 +5,8 @@
 //! wrong use or wrong input, [`INTERRUPTED`] when stopped from the keyboard.
 
 mod args;
+mod compare;
+mod comparison;
 mod decimals;
 mod error;
 mod interrupt;
@@ -15,6 +17,7 @@ mod plan;
 mod planner;
 mod plot;
 mod progress;
+mod reproduce;
 mod set_points;
 mod setup;
 mod source;
@@ -65,6 +68,8 @@ where
     let outcome = match command {
         Command::Plan(args) => plan::plan(&args, out, err),
         Command::Verify(args) => verify::verify(&args, out, err),
+        Command::Compare(args) => compare::compare(&args, out, err),
+        Command::Reproduce(args) => reproduce::reproduce(&args, out, err),
         Command::Machines(args) => machines::machines(&args, out).map(|()| DONE),
         Command::Completions { shell } => {
             let mut command = CommandLine::command();

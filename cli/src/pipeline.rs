@@ -86,86 +86,125 @@ where
     /// Runs the program to its end.
     pub(crate) fn run(mut self) -> Result<Outcome<R, N>, CliError> {
         let mut batch = Vec::with_capacity(MOVES);
-        let mut pieces = Vec::with_capacity(PIECES);
-        let mut planning_time = Duration::ZERO;
-        let mut progress = Progress::default();
+        let mut lane = Lane::new(self.planner, self.judge);
         loop {
             let more = self.moves.fill(&mut batch)?;
-            for next in &batch {
-                self.judge.expect(next).map_err(|reason| CliError::Line {
-                    program: self.moves.name.clone(),
-                    line: next.line(),
-                    reason: reason.to_string(),
-                })?;
-                if let Some(plot) = &mut self.plot {
+            if let Some(plot) = &mut self.plot {
+                for next in &batch {
                     plot.expect(next);
                 }
             }
-            let mut waiting = batch.iter();
-            let mut open = true;
-            while open {
-                let begin = Instant::now();
-                open = self.plan(&mut waiting, &mut progress, !more, &mut pieces)?;
-                planning_time += begin.elapsed();
-                for piece in pieces.drain(..) {
-                    self.judge.observe(&piece);
-                    self.set_points.observe(&piece)?;
-                    if let Some(plot) = &mut self.plot {
-                        plot.observe(&piece);
-                    }
+            lane.run(&batch, !more, &self.moves.name, |piece| {
+                self.set_points.observe(piece)?;
+                if let Some(plot) = &mut self.plot {
+                    plot.observe(piece);
                 }
-                check_interrupt()?;
-            }
+                Ok(())
+            })?;
             if !more {
                 break;
             }
         }
+        let (report, planning_time) = lane.finish();
         Ok(Outcome {
             program: self.moves.program,
-            report: self.judge.finish(),
+            report,
             rows: self.set_points.finish()?,
             planning_time,
             plot: self.plot,
         })
+    }
+}
+
+/// A planner and the judge of its motion.
+pub(crate) struct Lane<const N: usize> {
+    planner: Box<dyn MotionPlanner<N>>,
+    judge: Judge<N>,
+    pieces: Vec<Piece<N>>,
+    planning_time: Duration,
+    /// Line of the last move that the planner was given.
+    line: u32,
+    /// Whether the planner knows that no move follows.
+    finished: bool,
+}
+
+impl<const N: usize> Lane<N> {
+    /// A planner that was given nothing yet.
+    pub(crate) fn new(planner: Box<dyn MotionPlanner<N>>, judge: Judge<N>) -> Self {
+        Self {
+            planner,
+            judge,
+            pieces: Vec::with_capacity(PIECES),
+            planning_time: Duration::ZERO,
+            line: 0,
+            finished: false,
+        }
+    }
+
+    /// Plans and judges a batch of moves; after the `last` one the motion comes to rest.
+    ///
+    /// `program` is the name of the program in refusals; `take` sees every piece.
+    pub(crate) fn run(
+        &mut self,
+        batch: &[Move<N>],
+        last: bool,
+        program: &str,
+        mut take: impl FnMut(&Piece<N>) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        for next in batch {
+            self.judge.expect(next).map_err(|reason| CliError::Line {
+                program: program.to_owned(),
+                line: next.line(),
+                reason: reason.to_string(),
+            })?;
+        }
+        let mut waiting = batch.iter();
+        let mut open = true;
+        while open {
+            let begin = Instant::now();
+            open = self.plan(&mut waiting, last, program)?;
+            self.planning_time += begin.elapsed();
+            for piece in self.pieces.drain(..) {
+                self.judge.observe(&piece);
+                take(&piece)?;
+            }
+            check_interrupt()?;
+        }
+        Ok(())
+    }
+
+    /// The verdict, and how long the planner took.
+    pub(crate) fn finish(self) -> (Report<N>, Duration) {
+        (self.judge.finish(), self.planning_time)
     }
 
     /// Plans until a batch of pieces is full, or the moves are used up; then it gives `false`.
     fn plan(
         &mut self,
         waiting: &mut std::slice::Iter<'_, Move<N>>,
-        progress: &mut Progress,
         last: bool,
-        pieces: &mut Vec<Piece<N>>,
+        program: &str,
     ) -> Result<bool, CliError> {
-        while pieces.len() < PIECES {
+        while self.pieces.len() < PIECES {
             if let Some(piece) = self.planner.pull() {
-                pieces.push(piece);
+                self.pieces.push(piece);
                 continue;
             }
             let outcome = if let Some(next) = waiting.next() {
-                progress.line = next.line();
+                self.line = next.line();
                 self.planner.push(next)
-            } else if last && !progress.finished {
-                progress.finished = true;
+            } else if last && !self.finished {
+                self.finished = true;
                 self.planner.finish()
             } else {
                 return Ok(false);
             };
             outcome.map_err(|reason| CliError::Plan {
-                program: self.moves.name.clone(),
-                line: progress.line,
+                program: program.to_owned(),
+                line: self.line,
                 reason,
             })?;
         }
         Ok(true)
     }
-}
-
-/// How far a planner was told to go.
-#[derive(Clone, Copy, Debug, Default)]
-struct Progress {
-    /// Line of the last move that it was given.
-    line: u32,
-    /// Whether it knows that no move follows.
-    finished: bool,
 }

@@ -8,7 +8,7 @@ use crate::error::{CliError, DONE, OUTSIDE};
 use crate::output::{OutputFile, same_file};
 use crate::pipeline::{Moves, Outcome, Pipeline};
 use crate::planner::planner;
-use crate::plot::{Caption, Plot, png};
+use crate::plot::{Caption, Picture, Plot};
 use crate::set_points::{Destination, SetPoints};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -83,27 +83,6 @@ pub(crate) fn report(
     } else {
         OUTSIDE
     })
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Picture {
-    Svg,
-    Png,
-}
-
-impl Picture {
-    fn of(path: &Path) -> Result<Self, CliError> {
-        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-        match ending.as_ref().and_then(|ending| ending.to_str()) {
-            Some("svg") => Ok(Self::Svg),
-            Some("png") => Ok(Self::Png),
-            _ => Err(CliError::Option {
-                option: "--plot",
-                value: path.display().to_string(),
-                bound: "its name must end in .svg or .png".to_owned(),
-            }),
-        }
-    }
 }
 
 struct Job<const N: usize>;
@@ -200,6 +179,14 @@ fn begin(
     ))
 }
 
+/// A program on a picture: its name without its folder.
+pub(crate) fn title(program: &str) -> String {
+    Path::new(program).file_name().map_or_else(
+        || program.to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
 fn draw<R, const N: usize>(
     mut file: OutputFile,
     picture: Picture,
@@ -207,10 +194,7 @@ fn draw<R, const N: usize>(
     summary: &Summary,
 ) -> Result<OutputFile, CliError> {
     let caption = Caption {
-        title: Path::new(&summary.program).file_name().map_or_else(
-            || summary.program.clone(),
-            |name| name.to_string_lossy().into_owned(),
-        ),
+        title: title(&summary.program),
         subtitle: format!(
             "{} on {} · cycle time {} ({:.3} s) · path {:.1} mm · deviation at most {:.2} µm, {:.0} % of the tolerance",
             summary.method.as_deref().unwrap_or(""),
@@ -224,16 +208,7 @@ fn draw<R, const N: usize>(
     };
     if let Some(plot) = outcome.plot {
         let svg = plot.draw(&caption);
-        let bytes = match picture {
-            Picture::Svg => svg.into_bytes(),
-            Picture::Png => png(&svg).map_err(|reason| CliError::Plot {
-                file: file.path().to_owned(),
-                reason,
-            })?,
-        };
-        let path = file.path().to_owned();
-        file.write_all(&bytes)
-            .map_err(|reason| CliError::write(path, reason))?;
+        picture.write(&svg, &mut file)?;
     }
     Ok(file)
 }

@@ -4,7 +4,7 @@
 
 use crate::error::CliError;
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
-use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
+use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
 
 /// A method of planning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub struct MethodName {
 pub const METHODS: &[MethodName] = &[
     MethodName {
         name: "kcs",
-        summary: "the fastest corner motion, corner by corner",
+        summary: "the fastest of everything: corners turned, stopped at, or many fine corners superposed",
     },
     MethodName {
         name: "kcs-uninterrupted",
@@ -30,10 +30,28 @@ pub const METHODS: &[MethodName] = &[
         summary: "acceleration is zero where a corner begins and ends",
     },
     MethodName {
-        name: "exact-stop",
-        summary: "a full stop at every corner",
+        name: "kcs-local",
+        summary: "the dissertation's local corners: uninterrupted acceleration, each move as programmed",
+    },
+    MethodName {
+        name: "kcs-global",
+        summary: "the dissertation's global corners: as local, overlapping where moves are short",
+    },
+    MethodName {
+        name: BEZIER,
+        summary: "spline corners for comparison: curvature-optimal quintics at constant speed",
+    },
+    MethodName {
+        name: EXACT_STOP,
+        summary: "a full stop at the end of every move",
     },
 ];
+
+/// The baseline of spline corners.
+const BEZIER: &str = "bezier";
+
+/// The method that all others are measured by.
+pub(crate) const EXACT_STOP: &str = "exact-stop";
 
 /// The planner of a method, at rest at `start`.
 pub(crate) fn planner<const N: usize>(
@@ -44,6 +62,9 @@ pub(crate) fn planner<const N: usize>(
     if let Some(method) = Method::find(method) {
         let settings = Settings::new(limits).with_method(method);
         return Ok(Box::new(KinematicSmoothing::new(start, &settings)));
+    }
+    if method == BEZIER {
+        return Ok(Box::new(BezierSmoothing::new(start, limits)));
     }
     let names: Vec<_> = METHODS.iter().map(|method| method.name).collect();
     Err(CliError::Option {

@@ -202,7 +202,8 @@ fn shortest(value: f64) -> f64 {
     if rounded > 0.0 { rounded } else { value }
 }
 
-fn worst_first(examples: &[Violation]) -> Vec<String> {
+/// Violations, the worst first, as text.
+pub(crate) fn worst_first(examples: &[Violation]) -> Vec<String> {
     let mut sorted: Vec<_> = examples.iter().collect();
     sorted.sort_by(|one, two| severity(two).total_cmp(&severity(one)));
     sorted.iter().map(ToString::to_string).collect()

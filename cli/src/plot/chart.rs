@@ -15,6 +15,12 @@ pub(crate) const SMALL: f64 = 13.0;
 /// As above.
 pub(crate) const NORMAL: f64 = 15.0;
 
+/// Motions from here on are told in minutes, s.
+const TEN_MINUTES: f64 = 600.0;
+
+/// Motions from here on are told in hours, s.
+const FIVE_HOURS: f64 = 18_000.0;
+
 /// Pixels between two lines of the grid, about.
 const GRID_PITCH: f64 = 85.0;
 
@@ -104,6 +110,39 @@ impl Chart {
     pub(crate) fn draw_remark(&self, canvas: &mut Canvas, remark: &str) {
         let at = (self.x + self.width, self.y - 8.0);
         canvas.text(at, Anchor::End, SMALL, LABEL, remark);
+    }
+
+    /// Draws the names of the curves, right-aligned above the frame: name, colour (none for a mere
+    /// remark), and whether the curve is dashed.
+    pub(crate) fn draw_legend(&self, canvas: &mut Canvas, entries: &[(&str, &str, bool)]) {
+        let mut x = self.x + self.width;
+        let y = self.y - 8.0;
+        for &(name, color, dashed) in entries.iter().rev() {
+            canvas.text((x, y), Anchor::End, SMALL, LABEL, name);
+            x -= width_of(name, SMALL) + 7.0;
+            if !color.is_empty() {
+                let dashes = if dashed {
+                    " stroke-dasharray=\"6 4\""
+                } else {
+                    ""
+                };
+                let style = format!("stroke=\"{color}\" stroke-width=\"2.4\"{dashes}");
+                canvas.line((x - 24.0, y - 4.5), (x, y - 4.5), &style);
+                x -= 24.0;
+            }
+            x -= 16.0;
+        }
+    }
+}
+
+/// The unit in which a motion of this length is told, s, and its name.
+pub(crate) fn time_unit(duration: f64) -> (f64, &'static str) {
+    if duration < TEN_MINUTES {
+        (1.0, "s")
+    } else if duration < FIVE_HOURS {
+        (60.0, "min")
+    } else {
+        (3600.0, "h")
     }
 }
 

@@ -8,6 +8,16 @@ pub(crate) fn of_axis(axis: usize) -> &'static str {
     AXES[axis % AXES.len()]
 }
 
+/// Colours of the methods that are compared, in their order.
+const METHODS: [&str; 8] = [
+    "#7b2cbf", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9", "#20262d",
+];
+
+/// Colour of a method.
+pub(crate) fn of_method(index: usize) -> &'static str {
+    METHODS[index % METHODS.len()]
+}
+
 /// The motion as a whole.
 pub(crate) const MOTION: &str = "#7b2cbf";
 

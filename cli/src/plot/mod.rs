@@ -9,8 +9,10 @@ mod color;
 mod corner;
 mod curve;
 mod envelope;
+mod feeds;
 mod motion;
 mod path;
+mod picture;
 mod render;
 mod sheet;
 mod trace;
@@ -22,7 +24,8 @@ use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Move, Piece, Sample, Vector};
 use trace::Trace;
 
-pub(crate) use render::png;
+pub(crate) use feeds::Feeds;
+pub(crate) use picture::Picture;
 pub(crate) use sheet::Caption;
 
 /// Points at which the speed along a piece is drawn.

@@ -1,7 +1,7 @@
 //! Feedrate, velocity, acceleration and jerk over time, with their limits.
 
-use super::canvas::{Anchor, Canvas, Outline};
-use super::chart::{Chart, SMALL, width_of};
+use super::canvas::{Canvas, Outline};
+use super::chart::{Chart, time_unit};
 use super::curve::draw_curve;
 use super::{Plot, color, feed_curve, speed_curve};
 
@@ -9,22 +9,16 @@ use super::{Plot, color, feed_curve, speed_curve};
 const FAR_LIMIT: f64 = 3.0;
 
 /// Rapids faster than this many times the fastest cut are told instead of drawn.
-const FAR_RAPID: f64 = 2.0;
+pub(super) const FAR_RAPID: f64 = 2.0;
 
 /// Numbers from here on are shown in thousands: mm/s³ become m/s³.
 const THOUSANDS: f64 = 20_000.0;
-
-/// Motions from here on are told in minutes, s.
-const TEN_MINUTES: f64 = 600.0;
-
-/// Motions from here on are told in hours, s.
-const FIVE_HOURS: f64 = 18_000.0;
 
 /// What goes back less than this share of what goes forward gets no more room than that.
 const BACKWARD: f64 = 0.08;
 
 /// Room above the highest curve, as a share.
-const HEADROOM: f64 = 1.12;
+pub(super) const HEADROOM: f64 = 1.12;
 
 /// One chart of the axes.
 struct Panel<'a> {
@@ -118,7 +112,7 @@ fn feedrate<const N: usize>(
     if too_fast {
         entries.push((&told, "", false));
     }
-    legend(canvas, &chart, &entries);
+    chart.draw_legend(canvas, &entries);
 }
 
 /// The programmed feedrate as a dashed step line; rapids have none.
@@ -244,18 +238,7 @@ fn axes<const N: usize>(
     if !told.is_empty() {
         entries.push((&told, "", false));
     }
-    legend(canvas, &chart, &entries);
-}
-
-/// The unit in which a motion of this length is told, s, and its name.
-fn time_unit(duration: f64) -> (f64, &'static str) {
-    if duration < TEN_MINUTES {
-        (1.0, "s")
-    } else if duration < FIVE_HOURS {
-        (60.0, "min")
-    } else {
-        (3600.0, "h")
-    }
+    chart.draw_legend(canvas, &entries);
 }
 
 /// Limits that are too far away to be drawn, in words.
@@ -277,26 +260,5 @@ fn told_limits(panel: &Panel<'_>, names: &[String], drawn: &[bool], alike: bool)
         String::new()
     } else {
         format!("limits {} {}", told.join(", "), panel.unit)
-    }
-}
-
-/// Names of the curves, right-aligned above the frame.
-fn legend(canvas: &mut Canvas, chart: &Chart, entries: &[(&str, &str, bool)]) {
-    let mut x = chart.x + chart.width;
-    let y = chart.y - 8.0;
-    for &(name, color, dashed) in entries.iter().rev() {
-        canvas.text((x, y), Anchor::End, SMALL, "fill=\"#4a525b\"", name);
-        x -= width_of(name, SMALL) + 7.0;
-        if !color.is_empty() {
-            let dashes = if dashed {
-                " stroke-dasharray=\"6 4\""
-            } else {
-                ""
-            };
-            let style = format!("stroke=\"{color}\" stroke-width=\"2.4\"{dashes}");
-            canvas.line((x - 24.0, y - 4.5), (x, y - 4.5), &style);
-            x -= 24.0;
-        }
-        x -= 16.0;
     }
 }

@@ -20,19 +20,21 @@ pub(crate) struct Caption {
     pub(crate) subtitle: String,
 }
 
+impl Caption {
+    /// Writes it.
+    pub(super) fn draw(&self, canvas: &mut Canvas) {
+        let title = "fill=\"#20262d\" font-weight=\"bold\"";
+        canvas.text((64.0, 48.0), Anchor::Start, 26.0, title, &self.title);
+        let subtitle = "fill=\"#4a525b\"";
+        canvas.text((64.0, 77.0), Anchor::Start, 16.0, subtitle, &self.subtitle);
+    }
+}
+
 impl<const N: usize> Plot<N> {
     /// The picture as SVG.
     pub(crate) fn draw(self, caption: &Caption) -> String {
         let mut canvas = Canvas::new(WIDTH, HEIGHT);
-        let title = "fill=\"#20262d\" font-weight=\"bold\"";
-        canvas.text((64.0, 48.0), Anchor::Start, 26.0, title, &caption.title);
-        canvas.text(
-            (64.0, 77.0),
-            Anchor::Start,
-            16.0,
-            "fill=\"#4a525b\"",
-            &caption.subtitle,
-        );
+        caption.draw(&mut canvas);
         path::draw(&self, &mut canvas, 64.0, 128.0, 660.0, 520.0);
         motion::draw(&self, &mut canvas, 812.0, 752.0, TOPS, 212.0);
         let corner = self.corner.finish();

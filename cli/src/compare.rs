@@ -1,0 +1,145 @@
+//! Plans a program by several methods at once and shows them side by side.
+//!
+//! The program is read once: every batch of moves goes to all methods in turn, so that standard
+//! input can be compared too and nothing is ever held as a whole.
+
+use crate::args::CompareArgs;
+use crate::comparison::{Comparison, MethodRow};
+use crate::error::{CliError, DONE, OUTSIDE};
+use crate::output::OutputFile;
+use crate::pipeline::Lane;
+use crate::plan::{moves, title, warn};
+use crate::planner::{EXACT_STOP, METHODS, planner};
+use crate::plot::{Caption, Feeds, Picture};
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::travel::OnAxes;
+use std::io::Write;
+use std::path::Path;
+use toolglide_kinematics::Move;
+use toolglide_kinematics::verify::Judge;
+
+/// Runs the command.
+pub(crate) fn compare(
+    args: &CompareArgs,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Result<u8, CliError> {
+    let setup = Setup::new(&args.job, None)?;
+    match setup.axes.len() {
+        2 => run::<2>(args, &setup, out, err),
+        _ => run::<3>(args, &setup, out, err),
+    }
+}
+
+fn run<const N: usize>(
+    args: &CompareArgs,
+    setup: &Setup,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Result<u8, CliError>
+where
+    Move<N>: OnAxes,
+{
+    let picture = args.plot.as_deref().map(Picture::of).transpose()?;
+    let source = Source::open(&args.job.program)?;
+    let name = source.name.clone();
+    let inputs = [args.job.program.as_path(), Path::new(&args.job.machine)];
+    let drawing = args
+        .plot
+        .as_deref()
+        .map(|path| OutputFile::begin(path, &inputs))
+        .transpose()?;
+    let chosen = chosen(&args.methods);
+    let (start, limits) = (setup.start::<N>(), setup.limits::<N>());
+    let lane = |method: &str| {
+        planner(method, start, limits).map(|planner| Lane::new(planner, Judge::new(start, limits)))
+    };
+    let mut lanes = chosen
+        .iter()
+        .map(|method| lane(method))
+        .collect::<Result<Vec<_>, _>>()?;
+    let place_of_stop = chosen.iter().position(|method| method == EXACT_STOP);
+    if place_of_stop.is_none() {
+        // The measure of all others, even where it is not shown.
+        lanes.push(lane(EXACT_STOP)?);
+    }
+    let mut feeds = drawing.is_some().then(|| Feeds::new(chosen.clone()));
+    let mut moves = moves::<N>(&args.job, setup, source);
+    let mut batch = Vec::new();
+    loop {
+        let more = moves.fill(&mut batch)?;
+        if let Some(feeds) = &mut feeds {
+            batch.iter().for_each(|next| feeds.expect(next));
+        }
+        for (index, lane) in lanes.iter_mut().enumerate() {
+            lane.run(&batch, !more, &name, |piece| {
+                if let Some(feeds) = &mut feeds {
+                    feeds.observe(index, piece);
+                }
+                Ok(())
+            })?;
+        }
+        if !more {
+            break;
+        }
+    }
+    let blocks = moves.program.blocks();
+    let results: Vec<_> = lanes.into_iter().map(Lane::finish).collect();
+    let stop = place_of_stop
+        .map_or(results.last(), |place| results.get(place))
+        .map_or(0.0, |(report, _)| report.cycle_time);
+    let rows = chosen
+        .iter()
+        .zip(&results)
+        .map(|(method, (report, time))| MethodRow::of(method, report, *time, blocks, stop))
+        .collect();
+    warn(&moves.program, err);
+    let comparison = Comparison::new(&name, setup, blocks, rows);
+    if let (Some(mut file), Some(picture), Some(feeds)) = (drawing, picture, feeds) {
+        let caption = Caption {
+            title: title(&name),
+            subtitle: format!("feedrates of {} methods on {}", chosen.len(), setup.machine),
+        };
+        picture.write(&feeds.draw(&caption), &mut file)?;
+        file.commit()?;
+    }
+    let text = if args.job.json {
+        comparison.json()?
+    } else {
+        comparison.text()
+    };
+    out.write_all(text.as_bytes())
+        .map_err(|reason| CliError::write("standard output", reason))?;
+    let _ = err.write_all(comparison.complaint().as_bytes());
+    Ok(if comparison.passes() { DONE } else { OUTSIDE })
+}
+
+/// The methods asked for, each once; all where none was.
+fn chosen(asked: &[String]) -> Vec<String> {
+    if asked.is_empty() {
+        return METHODS
+            .iter()
+            .map(|method| method.name.to_owned())
+            .collect();
+    }
+    let mut chosen = Vec::<String>::new();
+    for method in asked {
+        if !chosen.contains(method) {
+            chosen.push(method.clone());
+        }
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_method_named_twice_is_planned_once() {
+        let asked = ["kcs", "exact-stop", "kcs"].map(str::to_owned);
+        assert_eq!(chosen(&asked), ["kcs", "exact-stop"]);
+        assert_eq!(chosen(&[]).len(), METHODS.len());
+    }
+}

@@ -1,0 +1,185 @@
+//! Several methods side by side, for people and for programs.
+//!
+//! Source: the judge's reports. Not here: planning.
+
+use crate::setup::Setup;
+use crate::summary::worst_first;
+use serde::Serialize;
+use std::fmt::Write;
+use std::time::Duration;
+use toolglide_kinematics::verify::{Peak, Report};
+
+/// Several methods on one program, as JSON names it.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Comparison {
+    program: String,
+    machine: String,
+    blocks: u64,
+    axes: Vec<char>,
+    acceleration_limit: Vec<f64>,
+    jerk_limit: Vec<f64>,
+    methods: Vec<MethodRow>,
+}
+
+/// What one method did.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct MethodRow {
+    method: String,
+    cycle_time_s: f64,
+    ratio_to_exact_stop: f64,
+    peak_acceleration: Vec<f64>,
+    peak_jerk: Vec<f64>,
+    max_deviation_mm: f64,
+    max_corner_error_mm: f64,
+    violations: u64,
+    planning_us_per_block: f64,
+    #[serde(skip)]
+    worst: Vec<String>,
+}
+
+impl MethodRow {
+    /// What a method did; `stop` is the cycle time with exact stops.
+    #[allow(clippy::cast_precision_loss, reason = "blocks are fewer than 2^53")]
+    pub(crate) fn of<const N: usize>(
+        method: &str,
+        report: &Report<N>,
+        planning_time: Duration,
+        blocks: u64,
+        stop: f64,
+    ) -> Self {
+        let values = |peaks: &[Peak; N]| peaks.iter().map(|peak| peak.value).collect();
+        Self {
+            method: method.to_owned(),
+            cycle_time_s: report.cycle_time,
+            // A motion that takes no time takes no less than another.
+            ratio_to_exact_stop: if stop > 0.0 {
+                report.cycle_time / stop
+            } else {
+                1.0
+            },
+            peak_acceleration: values(&report.peak_acceleration),
+            peak_jerk: values(&report.peak_jerk),
+            max_deviation_mm: report.deviation.value,
+            max_corner_error_mm: report.corner_error.value,
+            violations: report.violations,
+            planning_us_per_block: 1e6 * planning_time.as_secs_f64() / blocks.max(1) as f64,
+            worst: worst_first(&report.examples),
+        }
+    }
+}
+
+impl Comparison {
+    /// The methods of a run.
+    pub(crate) fn new(program: &str, setup: &Setup, blocks: u64, methods: Vec<MethodRow>) -> Self {
+        let limits = || setup.axes.iter().map(|axis| axis.limits);
+        Self {
+            program: program.to_owned(),
+            machine: setup.machine.clone(),
+            blocks,
+            axes: setup.letters(),
+            acceleration_limit: limits().map(|limits| limits.acceleration()).collect(),
+            jerk_limit: limits().map(|limits| limits.jerk()).collect(),
+            methods,
+        }
+    }
+
+    /// Whether no method broke anything.
+    pub(crate) fn passes(&self) -> bool {
+        self.methods.iter().all(|row| row.violations == 0)
+    }
+
+    /// The comparison as one JSON object, with a line end.
+    pub(crate) fn json(&self) -> Result<String, serde_json::Error> {
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// The comparison for people.
+    pub(crate) fn text(&self) -> String {
+        let mut text = format!(
+            "{}: {} blocks, planned for {}\n\n",
+            self.program, self.blocks, self.machine
+        );
+        let _ = writeln!(
+            text,
+            "{:<18} {:>14} {:>11} {:>14} {:>17} {:>11} {:>13}",
+            "method",
+            "cycle time, s",
+            "exact stop",
+            "deviation, mm",
+            "corner error, mm",
+            "violations",
+            "µs per block"
+        );
+        for row in &self.methods {
+            let _ = writeln!(
+                text,
+                "{:<18} {:>14.4} {:>9.1} % {:>14.5} {:>17.5} {:>11} {:>13.1}",
+                row.method,
+                row.cycle_time_s,
+                100.0 * row.ratio_to_exact_stop,
+                row.max_deviation_mm,
+                row.max_corner_error_mm,
+                row.violations,
+                row.planning_us_per_block
+            );
+        }
+        self.peaks(
+            &mut text,
+            "peak acceleration, mm/s² and share of the limit",
+            &self.acceleration_limit,
+            |row| &row.peak_acceleration,
+        );
+        self.peaks(
+            &mut text,
+            "peak jerk, mm/s³ and share of the limit",
+            &self.jerk_limit,
+            |row| &row.peak_jerk,
+        );
+        text
+    }
+
+    fn peaks(
+        &self,
+        text: &mut String,
+        title: &str,
+        limits: &[f64],
+        peaks: impl Fn(&MethodRow) -> &[f64],
+    ) {
+        let _ = write!(text, "\n{title}\n{:<18}", "method");
+        for axis in &self.axes {
+            let _ = write!(text, " {axis:>12} {:>8}", "");
+        }
+        trim(text);
+        for row in &self.methods {
+            let _ = write!(text, "{:<18}", row.method);
+            for (peak, limit) in peaks(row).iter().zip(limits) {
+                let _ = write!(text, " {peak:>12.1} {:>6.1} %", 100.0 * peak / limit);
+            }
+            trim(text);
+        }
+    }
+
+    /// What was broken by which method, worst first, one line each; empty when nothing was.
+    pub(crate) fn complaint(&self) -> String {
+        let mut text = String::new();
+        for row in &self.methods {
+            for violation in &row.worst {
+                let _ = writeln!(text, "{}: {}: {violation}", self.program, row.method);
+            }
+            let quoted = row.worst.len() as u64;
+            if row.violations > quoted {
+                let more = row.violations - quoted;
+                let _ = writeln!(text, "{}: {}: and {more} more", self.program, row.method);
+            }
+        }
+        text
+    }
+}
+
+/// Ends a line without blanks before its end.
+fn trim(text: &mut String) {
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+}

@@ -1,0 +1,151 @@
+//! The feedrates of several methods over one another against time, gathered in fixed memory.
+//!
+//! Not here: what the methods did otherwise.
+
+use super::canvas::{Anchor, Canvas};
+use super::chart::{Chart, NORMAL, SMALL, time_unit};
+use super::curve::draw_curve;
+use super::envelope::Envelope;
+use super::motion::{FAR_RAPID, HEADROOM};
+use super::{Caption, color};
+use toolglide_kinematics::{Move, Piece};
+
+/// Size of the sheet, pixels.
+const WIDTH: f64 = 1600.0;
+/// As above.
+const HEIGHT: f64 = 720.0;
+
+/// Where the legend begins, and the distance between two entries, pixels.
+const LEGEND: f64 = 1300.0;
+/// As above.
+const ENTRY: f64 = 46.0;
+
+/// Gathers the speeds of several motions.
+#[derive(Clone, Debug)]
+pub(crate) struct Feeds {
+    names: Vec<String>,
+    curves: Envelope,
+    times: Vec<f64>,
+    /// Largest feedrate of the program, rapids left out.
+    programmed: f64,
+}
+
+impl Feeds {
+    /// Begins with all motions at rest.
+    pub(crate) fn new(names: Vec<String>) -> Self {
+        Self {
+            curves: Envelope::new(names.len()),
+            times: vec![0.0; names.len()],
+            names,
+            programmed: 0.0,
+        }
+    }
+
+    /// Takes the next move of the path.
+    pub(crate) fn expect<const N: usize>(&mut self, next: &Move<N>) {
+        let feedrate = next.feedrate().speed();
+        if feedrate.is_finite() {
+            self.programmed = self.programmed.max(feedrate);
+        }
+    }
+
+    /// Takes the next piece of one of the motions.
+    pub(crate) fn observe<const N: usize>(&mut self, motion: usize, piece: &Piece<N>) {
+        let Some(time) = self.times.get_mut(motion) else {
+            return;
+        };
+        let start = *time;
+        *time += piece.duration();
+        let mut before = piece.at(0.0).velocity.norm();
+        for stretch in self.curves.stretches(start, *time) {
+            let until = self.curves.begin(stretch) + self.curves.width() - start;
+            let after = piece.at(until.min(piece.duration())).velocity.norm();
+            self.curves.add(stretch, motion, before);
+            self.curves.add(stretch, motion, after);
+            before = after;
+        }
+    }
+
+    /// The picture as SVG.
+    pub(crate) fn draw(&self, caption: &Caption) -> String {
+        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        caption.draw(&mut canvas);
+        let duration = self.times.iter().copied().fold(0.0, f64::max);
+        let fastest = (0..self.names.len())
+            .map(|motion| self.curves.peak(motion))
+            .fold(0.0, f64::max);
+        let too_fast = self.programmed > 0.0 && fastest > FAR_RAPID * self.programmed;
+        let most = if too_fast { self.programmed } else { fastest };
+        let (unit, unit_name) = time_unit(duration);
+        let or_one = |value: f64| if value > 0.0 { value } else { 1.0 };
+        let chart = Chart {
+            x: 64.0,
+            y: 128.0,
+            width: LEGEND - 64.0 - 40.0,
+            height: HEIGHT - 128.0 - 60.0,
+            across: (0.0, or_one(duration)),
+            upward: (0.0, or_one(HEADROOM * most)),
+        };
+        chart.draw_grid(&mut canvas, unit, true);
+        canvas.clip(chart.x, chart.y, chart.width, chart.height);
+        // The first method lies on top.
+        for motion in (0..self.names.len()).rev() {
+            let color = color::of_method(motion);
+            draw_curve(&mut canvas, &chart, &self.curves, motion, 1.0, color);
+        }
+        canvas.unclip();
+        chart.draw_frame(&mut canvas, "Feedrate along the path, mm/s");
+        if too_fast {
+            chart.draw_remark(&mut canvas, &format!("rapids up to {fastest:.0} mm/s"));
+        }
+        chart.draw_name_across(&mut canvas, &format!("time, {unit_name}"));
+        self.draw_legend(&mut canvas, chart.y + 12.0);
+        canvas.finish()
+    }
+
+    fn draw_legend(&self, canvas: &mut Canvas, top: f64) {
+        let mut y = top;
+        for (motion, (name, time)) in self.names.iter().zip(&self.times).enumerate() {
+            let style = format!("stroke=\"{}\" stroke-width=\"3\"", color::of_method(motion));
+            canvas.line((LEGEND, y - 5.0), (LEGEND + 28.0, y - 5.0), &style);
+            let at = (LEGEND + 38.0, y);
+            canvas.text(at, Anchor::Start, NORMAL, "fill=\"#20262d\"", name);
+            let at = (LEGEND + 38.0, y + 18.0);
+            let told = format!("cycle time {time:.3} s");
+            canvas.text(at, Anchor::Start, SMALL, "fill=\"#4a525b\"", &told);
+            y += ENTRY;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toolglide_kinematics::{Sample, Serves, Vector};
+
+    #[test]
+    fn motions_of_different_lengths_share_one_scale_of_time() {
+        let mut feeds = Feeds::new(vec!["one".to_owned(), "two".to_owned()]);
+        let serves = Serves { first: 0, last: 0 };
+        for (motion, duration) in [(0, 1.0), (1, 3.0), (0, 1.0)] {
+            let start = Sample {
+                position: Vector::<2>::zeros(),
+                velocity: Vector::<2>::x() * 5.0,
+                acceleration: Vector::zeros(),
+                jerk: Vector::zeros(),
+            };
+            let end = start.velocity * duration;
+            feeds.observe(motion, &Piece::new(&start, duration, end, serves));
+        }
+        assert_eq!(feeds.times, [2.0, 3.0]);
+        let caption = Caption {
+            title: "t".to_owned(),
+            subtitle: "s".to_owned(),
+        };
+        let svg = feeds.draw(&caption);
+        assert!(svg.contains("cycle time 2.000 s"), "one");
+        assert!(svg.contains("cycle time 3.000 s"), "two");
+        let empty = Feeds::new(Vec::new()).draw(&caption);
+        assert!(!empty.contains("NaN"), "nothing at all is drawn soundly");
+    }
+}

@@ -1,0 +1,254 @@
+//! The figures and tables with numbers, and what they print.
+//!
+//! Programs, feedrates and tolerances are those of `examples/dissertation/`; the limits of both axes
+//! stand here. Where the geometry is not printed it is our own construction, and says so.
+
+use super::quantity::{Planned, Quantity};
+
+/// A program and the limits of its axes.
+#[derive(Debug)]
+pub(super) struct Course {
+    pub(super) name: &'static str,
+    pub(super) text: &'static str,
+    /// mm/s²
+    pub(super) acceleration: f64,
+    /// mm/s³
+    pub(super) jerk: f64,
+}
+
+/// A figure or table.
+#[derive(Debug)]
+pub(super) struct Experiment {
+    pub(super) name: &'static str,
+    pub(super) title: &'static str,
+    pub(super) entries: &'static [Entry],
+}
+
+/// One number of it.
+#[derive(Debug)]
+pub(super) struct Entry {
+    pub(super) quantity: Quantity,
+    /// As it is printed; with < where it is a bound, empty where nothing is printed.
+    pub(super) printed: &'static str,
+    /// Why ours differs.
+    pub(super) note: &'static str,
+}
+
+macro_rules! course {
+    ($file:literal, $acceleration:literal, $jerk:literal) => {
+        Course {
+            name: $file,
+            text: include_str!(concat!("../../../examples/dissertation/", $file)),
+            acceleration: $acceleration,
+            jerk: $jerk,
+        }
+    };
+}
+
+static RIGHT_100: Course = course!("right_angle_100um.ngc", 2_500.0, 2e5);
+static RIGHT_10: Course = course!("right_angle_10um.ngc", 2_500.0, 2e5);
+static SIX: Course = course!("six_corners.ngc", 3_000.0, 1e5);
+static TURN_20: Course = course!("cornering_20deg.ngc", 3_000.0, 1e5);
+static TURN_160: Course = course!("cornering_160deg.ngc", 3_000.0, 1e5);
+static TWO_9: Course = course!("two_corners_9um.ngc", 3_000.0, 1e5);
+static TWO_80: Course = course!("two_corners_80um.ngc", 3_000.0, 1e5);
+static SPIRAL: Course = course!("spiral.ngc", 2_000.0, 5e4);
+static HEART: Course = course!("heart.ngc", 2_000.0, 5e4);
+
+const INTERRUPTED: &str = "kcs-interrupted";
+const UNINTERRUPTED: &str = "kcs-uninterrupted";
+const LOCAL: &str = "kcs-local";
+const GLOBAL: &str = "kcs-global";
+const BEZIER: &str = "bezier";
+const STOP: &str = "exact-stop";
+const KCS: &str = "kcs";
+
+const SPEEDS: &str = "print rounds phases up to 0.1 ms and truncates the speed (inferred)";
+const MADE: &str = "geometry not printed, so ours differs";
+const NOT_PRINTED: &str = "not printed";
+
+const fn planned(course: &'static Course, method: &'static str) -> Planned {
+    Planned { course, method }
+}
+
+const fn time(
+    course: &'static Course,
+    method: &'static str,
+    printed: &'static str,
+    note: &'static str,
+) -> Entry {
+    entry(Quantity::CycleTime(planned(course, method)), printed, note)
+}
+
+const fn speed(
+    course: &'static Course,
+    method: &'static str,
+    printed: &'static str,
+    note: &'static str,
+) -> Entry {
+    entry(
+        Quantity::CornerSpeed(planned(course, method)),
+        printed,
+        note,
+    )
+}
+
+const fn ratio(
+    course: &'static Course,
+    method: &'static str,
+    printed: &'static str,
+    note: &'static str,
+) -> Entry {
+    entry(
+        Quantity::Ratio(planned(course, method), STOP),
+        printed,
+        note,
+    )
+}
+
+/// By how much a method is slower than uninterrupted acceleration at each of six corners.
+const fn per_corner(
+    course: &'static Course,
+    method: &'static str,
+    printed: &'static str,
+    note: &'static str,
+) -> Entry {
+    let more = Quantity::PerCorner(planned(course, method), UNINTERRUPTED, 6);
+    entry(more, printed, note)
+}
+
+const fn entry(quantity: Quantity, printed: &'static str, note: &'static str) -> Entry {
+    Entry {
+        quantity,
+        printed,
+        note,
+    }
+}
+
+const fn crossover(tolerance: f64, note: &'static str) -> Entry {
+    entry(Quantity::Crossover(tolerance), "<20", note)
+}
+
+/// All of them, in the order of the text.
+pub(super) static EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: "section-2.3.1",
+        title: "a right angle between two moves of 10 mm",
+        entries: &[
+            speed(&RIGHT_100, INTERRUPTED, "32.9", SPEEDS),
+            time(&RIGHT_100, INTERRUPTED, ".296", ""),
+            speed(&RIGHT_100, UNINTERRUPTED, "45.9", SPEEDS),
+            time(&RIGHT_100, UNINTERRUPTED, ".290", ""),
+            time(&RIGHT_100, STOP, "", NOT_PRINTED),
+            time(&RIGHT_100, KCS, "", NOT_PRINTED),
+            speed(&RIGHT_10, INTERRUPTED, "7.07", SPEEDS),
+            time(&RIGHT_10, INTERRUPTED, ".310", ""),
+            speed(&RIGHT_10, UNINTERRUPTED, "14.1", SPEEDS),
+            time(&RIGHT_10, UNINTERRUPTED, ".293", ""),
+            time(
+                &RIGHT_10,
+                STOP,
+                "",
+                "not printed; faster than interrupted at 10 µm",
+            ),
+            time(&RIGHT_10, KCS, "", NOT_PRINTED),
+        ],
+    },
+    Experiment {
+        name: "fig-2.9",
+        title: "the turn above which uninterrupted corners are faster, by search over two moves of 10 mm",
+        entries: &[
+            crossover(0.005, ""),
+            crossover(0.01, "the claim holds up to about 10 µm"),
+            crossover(0.02, ""),
+            crossover(0.05, ""),
+            crossover(
+                0.1,
+                "below the crossover the acceleration must run out below the feedrate",
+            ),
+            crossover(0.2, ""),
+        ],
+    },
+    Experiment {
+        name: "table-2.1",
+        title: "a path of six corners; geometry, limits and tolerance are our construction",
+        entries: &[
+            time(
+                &SIX,
+                UNINTERRUPTED,
+                "2.3510",
+                "a fit: the edges were chosen to give this time",
+            ),
+            time(&SIX, INTERRUPTED, "2.4644", MADE),
+            time(
+                &SIX,
+                BEZIER,
+                "2.5015",
+                "taken for the spline corners; geometry not printed, so ours differs",
+            ),
+            per_corner(
+                &SIX,
+                INTERRUPTED,
+                "18.9",
+                "from the printed times; grows with turn and tolerance",
+            ),
+            per_corner(&SIX, BEZIER, "25.1", "from the printed times"),
+            per_corner(
+                &SIX,
+                STOP,
+                "",
+                "not printed; here stopping is faster than interrupting",
+            ),
+        ],
+    },
+    Experiment {
+        name: "fig-3.3",
+        title: "cornering speeds; both turns and the tolerance are inferred from the speeds",
+        entries: &[
+            speed(&TURN_20, LOCAL, "48", ""),
+            speed(
+                &TURN_160,
+                LOCAL,
+                "23",
+                "turns of 94 and 144 to 170 degrees all print 23",
+            ),
+        ],
+    },
+    Experiment {
+        name: "fig-3.9",
+        title: "two corners of 45 degrees, 0.5 mm apart",
+        entries: &[
+            speed(&TWO_9, LOCAL, "13.26", ""),
+            time(&TWO_9, LOCAL, ".357", ""),
+            time(
+                &TWO_80,
+                GLOBAL,
+                ".317",
+                "print rounds phases up to 0.1 ms (inferred)",
+            ),
+        ],
+    },
+    Experiment {
+        name: "table-3.1",
+        title: "a spiral of 36 moves of 1 mm; geometry is our construction, so the ratios count",
+        entries: &[
+            time(
+                &SPIRAL,
+                STOP,
+                "3.4832",
+                "limits per axis are wider along slanted moves than along the path",
+            ),
+            ratio(&SPIRAL, LOCAL, ".835", MADE),
+            ratio(&SPIRAL, GLOBAL, ".541", MADE),
+            ratio(&SPIRAL, KCS, "", NOT_PRINTED),
+        ],
+    },
+    Experiment {
+        name: "table-3.2",
+        title: "a heart; geometry is our construction, so the ratio counts",
+        entries: &[
+            ratio(&HEART, GLOBAL, ".551", MADE),
+            ratio(&HEART, KCS, "", NOT_PRINTED),
+        ],
+    },
+];

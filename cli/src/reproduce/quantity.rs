@@ -1,0 +1,75 @@
+//! What is compared with print.
+//!
+//! Not here: its value.
+
+use super::experiments::Course;
+
+/// A number of a figure or table.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Quantity {
+    /// Time for the whole program.
+    CycleTime(Planned),
+    /// Speed at which the first corner is entered.
+    CornerSpeed(Planned),
+    /// Cycle time of one method as a share of that of another.
+    Ratio(Planned, &'static str),
+    /// By how much longer one method takes than another, for each of the corners.
+    PerCorner(Planned, &'static str, u32),
+    /// The turn above which a corner is faster with uninterrupted acceleration, within this
+    /// tolerance, mm.
+    Crossover(f64),
+}
+
+/// A program planned by a method.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planned {
+    pub(super) course: &'static Course,
+    pub(super) method: &'static str,
+}
+
+impl Quantity {
+    /// The program, where there is one.
+    pub(super) fn program(&self) -> Option<&'static str> {
+        match self {
+            Self::CycleTime(planned)
+            | Self::CornerSpeed(planned)
+            | Self::Ratio(planned, _)
+            | Self::PerCorner(planned, _, _) => Some(planned.course.name),
+            Self::Crossover(_) => None,
+        }
+    }
+
+    /// What it is, in words.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::CycleTime(planned) => format!("cycle time, {}", planned.method),
+            Self::CornerSpeed(planned) => format!("corner speed, {}", planned.method),
+            Self::Ratio(planned, other) => format!("cycle time, {} / {other}", planned.method),
+            Self::PerCorner(planned, other, _) => {
+                format!("per corner, {} - {other}", planned.method)
+            }
+            Self::Crossover(tolerance) => format!("crossover turn at {:.0} µm", 1e3 * tolerance),
+        }
+    }
+
+    /// Its unit; nothing for a ratio.
+    pub(super) fn unit(&self) -> &'static str {
+        match self {
+            Self::CycleTime(_) => "s",
+            Self::CornerSpeed(_) => "mm/s",
+            Self::Ratio(..) => "",
+            Self::PerCorner(..) => "ms",
+            Self::Crossover(_) => "deg",
+        }
+    }
+
+    /// Decimals with which it is shown: one or two more than are printed.
+    pub(super) fn decimals(&self) -> usize {
+        match self {
+            Self::CycleTime(_) => 5,
+            Self::CornerSpeed(_) | Self::PerCorner(..) => 2,
+            Self::Ratio(..) => 4,
+            Self::Crossover(_) => 1,
+        }
+    }
+}

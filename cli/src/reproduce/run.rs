@@ -1,0 +1,111 @@
+//! Plans a program of the dissertation by a method, judges it, and remembers the result.
+
+use super::experiments::Course;
+use crate::error::CliError;
+use crate::pipeline::{Lane, Moves};
+use crate::planner::planner;
+use crate::summary::worst_first;
+use crate::travel::Travel;
+use toolglide_kinematics::verify::Judge;
+use toolglide_kinematics::{Limits, Tolerance, Vector};
+use toolglide_program::{Program, Settings};
+
+/// Largest velocity of every axis, mm/s: beyond what any of the programs asks for.
+const VELOCITY: f64 = 500.0;
+
+/// Tolerance before a program says its own, mm: every program does.
+const TOLERANCE: f64 = 0.01;
+
+/// What a plan came to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outcome {
+    /// How long it takes, s.
+    pub(super) cycle_time: f64,
+    /// Speed at the beginning of the first corner, mm/s; 0 where every corner is a stop.
+    pub(super) corner_speed: f64,
+}
+
+/// The plans made so far, and what was wrong with them.
+#[derive(Debug, Default)]
+pub(super) struct Runs {
+    done: Vec<(&'static str, &'static str, Outcome)>,
+    complaints: Vec<String>,
+}
+
+impl Runs {
+    /// A program planned by a method, once.
+    pub(super) fn of(
+        &mut self,
+        course: &'static Course,
+        method: &'static str,
+    ) -> Result<Outcome, CliError> {
+        let found = self
+            .done
+            .iter()
+            .find(|run| run.0 == course.name && run.1 == method);
+        if let Some(&(_, _, outcome)) = found {
+            return Ok(outcome);
+        }
+        let limits = (course.acceleration, course.jerk);
+        let outcome = self.plan(course.text, course.name, limits, method)?;
+        self.done.push((course.name, method, outcome));
+        Ok(outcome)
+    }
+
+    /// A text planned by a method within an acceleration and a jerk of both axes.
+    pub(super) fn plan(
+        &mut self,
+        text: &str,
+        name: &str,
+        (acceleration, jerk): (f64, f64),
+        method: &str,
+    ) -> Result<Outcome, CliError> {
+        let refuse = |reason: String| CliError::Line {
+            program: name.to_owned(),
+            line: 0,
+            reason,
+        };
+        let limits = Limits::<2>::uniform(VELOCITY, acceleration, jerk)
+            .map_err(|reason| refuse(reason.to_string()))?;
+        let mut settings =
+            Settings::new(Tolerance::new(TOLERANCE).map_err(|reason| refuse(reason.to_string()))?);
+        settings.axes = [true, true, false];
+        let mut moves = Moves::<_, 2> {
+            program: Program::new(text.as_bytes(), name, settings),
+            name: name.to_owned(),
+            travel: Travel::of(&[]),
+        };
+        let start = Vector::<2>::zeros();
+        let mut lane = Lane::new(planner(method, start, limits)?, Judge::new(start, limits));
+        let mut batch = Vec::new();
+        let mut corner_speed = None;
+        loop {
+            let more = moves.fill(&mut batch)?;
+            lane.run(&batch, !more, name, |piece| {
+                // A piece that serves two moves turns the corner between them.
+                if corner_speed.is_none() && piece.serves().first < piece.serves().last {
+                    corner_speed = Some(piece.at(0.0).velocity.norm());
+                }
+                Ok(())
+            })?;
+            if !more {
+                break;
+            }
+        }
+        let (report, _) = lane.finish();
+        let worst = worst_first(&report.examples);
+        let complaints = worst
+            .iter()
+            .map(|wrong| format!("{name}: {method}: {wrong}"));
+        self.complaints.extend(complaints);
+        Ok(Outcome {
+            cycle_time: report.cycle_time,
+            corner_speed: corner_speed.unwrap_or(0.0),
+        })
+    }
+
+    /// What was wrong with the plans, one line each; empty when nothing was.
+    pub(super) fn complaints(&self) -> &[String] {
+        &self.complaints
+    }
+}
