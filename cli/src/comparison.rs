@@ -183,3 +183,47 @@ fn trim(text: &mut String) {
     text.truncate(text.trim_end().len());
     text.push('\n');
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_method_that_breaks_a_limit_is_named_and_the_comparison_fails() {
+        let row = |method: &str, worst: &[&str], violations| MethodRow {
+            method: method.to_owned(),
+            cycle_time_s: 2.0,
+            ratio_to_exact_stop: 0.5,
+            peak_acceleration: vec![10.0],
+            peak_jerk: vec![30.0],
+            max_deviation_mm: 0.0,
+            max_corner_error_mm: 0.0,
+            violations,
+            planning_us_per_block: 1.0,
+            worst: worst.iter().map(|&wrong| wrong.to_owned()).collect(),
+        };
+        let mut comparison = Comparison {
+            program: "a.ngc".to_owned(),
+            machine: "m".to_owned(),
+            blocks: 1,
+            axes: vec!['X'],
+            acceleration_limit: vec![20.0],
+            jerk_limit: vec![40.0],
+            methods: vec![row("good", &[], 0)],
+        };
+        assert!(comparison.passes(), "nothing is broken");
+        assert_eq!(comparison.complaint(), "");
+        comparison.methods.push(row("bad", &["too fast"], 3));
+        assert!(!comparison.passes(), "one is broken");
+        assert_eq!(
+            comparison.complaint(),
+            "a.ngc: bad: too fast\na.ngc: bad: and 2 more\n"
+        );
+        let text = comparison.text();
+        assert!(
+            text.contains(" 50.0 %") && text.contains(" 75.0 %"),
+            "{text}"
+        );
+        assert!(text.lines().all(|line| line == line.trim_end()), "{text}");
+    }
+}

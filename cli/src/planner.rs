@@ -19,7 +19,7 @@ pub struct MethodName {
 pub const METHODS: &[MethodName] = &[
     MethodName {
         name: "kcs",
-        summary: "the fastest of everything: corners turned, stopped at, or many fine corners superposed",
+        summary: "the fastest it finds of everything: corners turned, stopped at, many fine ones superposed",
     },
     MethodName {
         name: "kcs-uninterrupted",

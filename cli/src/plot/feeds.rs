@@ -10,10 +10,23 @@ use super::motion::{FAR_RAPID, HEADROOM};
 use super::{Caption, color};
 use toolglide_kinematics::{Move, Piece};
 
-/// Size of the sheet, pixels.
+/// Width of the sheet, pixels.
 const WIDTH: f64 = 1600.0;
+
+/// Left edge of the charts, pixels.
+const LEFT: f64 = 64.0;
+
+/// Upper edge and height of the chart of all motions, pixels.
+const ALL_TOP: f64 = 128.0;
 /// As above.
-const HEIGHT: f64 = 720.0;
+const ALL_HEIGHT: f64 = 360.0;
+
+/// Height of the chart of one motion, the gap above it, and what is left below the last, pixels.
+const EACH_HEIGHT: f64 = 86.0;
+/// As above.
+const GAP: f64 = 34.0;
+/// As above.
+const BELOW: f64 = 56.0;
 
 /// Where the legend begins, and the distance between two entries, pixels.
 const LEGEND: f64 = 1300.0;
@@ -66,41 +79,65 @@ impl Feeds {
         }
     }
 
-    /// The picture as SVG.
+    /// The picture as SVG: all motions in one chart, and below it each in its own.
     pub(crate) fn draw(&self, caption: &Caption) -> String {
-        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        let count = self.names.len();
+        let mut bottom = ALL_TOP + ALL_HEIGHT;
+        let tops: Vec<f64> = self
+            .names
+            .iter()
+            .map(|_| {
+                let top = bottom + GAP;
+                bottom = top + EACH_HEIGHT;
+                top
+            })
+            .collect();
+        let mut canvas = Canvas::new(WIDTH, bottom + BELOW);
         caption.draw(&mut canvas);
         let duration = self.times.iter().copied().fold(0.0, f64::max);
-        let fastest = (0..self.names.len())
+        let fastest = (0..count)
             .map(|motion| self.curves.peak(motion))
             .fold(0.0, f64::max);
         let too_fast = self.programmed > 0.0 && fastest > FAR_RAPID * self.programmed;
         let most = if too_fast { self.programmed } else { fastest };
         let (unit, unit_name) = time_unit(duration);
         let or_one = |value: f64| if value > 0.0 { value } else { 1.0 };
-        let chart = Chart {
-            x: 64.0,
-            y: 128.0,
-            width: LEGEND - 64.0 - 40.0,
-            height: HEIGHT - 128.0 - 60.0,
+        let chart = |y, height| Chart {
+            x: LEFT,
+            y,
+            width: LEGEND - LEFT - 40.0,
+            height,
             across: (0.0, or_one(duration)),
             upward: (0.0, or_one(HEADROOM * most)),
         };
-        chart.draw_grid(&mut canvas, unit, true);
-        canvas.clip(chart.x, chart.y, chart.width, chart.height);
+        let all = chart(ALL_TOP, ALL_HEIGHT);
+        all.draw_grid(&mut canvas, unit, false);
         // The first method lies on top.
-        for motion in (0..self.names.len()).rev() {
+        let order: Vec<usize> = (0..count).rev().collect();
+        self.draw_motions(&mut canvas, &all, &order);
+        all.draw_frame(&mut canvas, "Feedrate along the path, mm/s");
+        if too_fast {
+            all.draw_remark(&mut canvas, &format!("rapids up to {fastest:.0} mm/s"));
+        }
+        self.draw_legend(&mut canvas, ALL_TOP + 12.0);
+        let mut lowest = all;
+        for (motion, (&top, name)) in tops.iter().zip(&self.names).enumerate() {
+            lowest = chart(top, EACH_HEIGHT);
+            lowest.draw_grid(&mut canvas, unit, motion + 1 == count);
+            self.draw_motions(&mut canvas, &lowest, &[motion]);
+            lowest.draw_frame(&mut canvas, name);
+        }
+        lowest.draw_name_across(&mut canvas, &format!("time, {unit_name}"));
+        canvas.finish()
+    }
+
+    fn draw_motions(&self, canvas: &mut Canvas, chart: &Chart, motions: &[usize]) {
+        canvas.clip(chart.x, chart.y, chart.width, chart.height);
+        for &motion in motions {
             let color = color::of_method(motion);
-            draw_curve(&mut canvas, &chart, &self.curves, motion, 1.0, color);
+            draw_curve(canvas, chart, &self.curves, motion, 1.0, color);
         }
         canvas.unclip();
-        chart.draw_frame(&mut canvas, "Feedrate along the path, mm/s");
-        if too_fast {
-            chart.draw_remark(&mut canvas, &format!("rapids up to {fastest:.0} mm/s"));
-        }
-        chart.draw_name_across(&mut canvas, &format!("time, {unit_name}"));
-        self.draw_legend(&mut canvas, chart.y + 12.0);
-        canvas.finish()
     }
 
     fn draw_legend(&self, canvas: &mut Canvas, top: f64) {

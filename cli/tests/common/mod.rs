@@ -85,3 +85,23 @@ pub(crate) fn rows(csv: &str) -> Vec<Vec<f64>> {
         .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
         .collect()
 }
+
+/// The same with numbers of four significant digits, and none below a picometre, so that rounding
+/// does not show.
+pub(crate) fn rounded(value: &serde_json::Value) -> serde_json::Value {
+    use serde_json::Value;
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap();
+            let text = format!("{:.3e}", if number.abs() < 1e-9 { 0.0 } else { number });
+            text.parse::<f64>().unwrap().into()
+        }
+        Value::Array(all) => all.iter().map(rounded).collect(),
+        Value::Object(all) => Value::Object(
+            all.iter()
+                .map(|(name, value)| (name.clone(), rounded(value)))
+                .collect(),
+        ),
+        other => other.clone(),
+    }
+}
