@@ -164,7 +164,7 @@ pub(super) static EXPERIMENTS: &[Experiment] = &[
             crossover(0.05, ""),
             crossover(
                 0.1,
-                "below the crossover the acceleration must run out below the feedrate",
+                "gentle turns must slow down so that acceleration runs out below the feedrate",
             ),
             crossover(0.2, ""),
         ],
@@ -236,7 +236,7 @@ pub(super) static EXPERIMENTS: &[Experiment] = &[
                 &SPIRAL,
                 STOP,
                 "3.4832",
-                "limits per axis are wider along slanted moves than along the path",
+                "print seems to limit the path, ours each axis: slanted moves are faster",
             ),
             ratio(&SPIRAL, LOCAL, ".835", MADE),
             ratio(&SPIRAL, GLOBAL, ".541", MADE),
