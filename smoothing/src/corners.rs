@@ -45,7 +45,7 @@ pub(crate) struct Corners<const N: usize> {
 impl<const N: usize> Corners<N> {
     /// A planner that takes `burst` legs without being pulled before it allocates.
     pub(crate) fn new(start: Vector<N>, settings: &Settings<N>, burst: usize) -> Self {
-        let size = settings.window.max(1);
+        let size = settings.window.max(SHORTEST_WINDOW);
         let selections = Selection::of(settings);
         let windows: Vec<_> = selections
             .iter()
@@ -61,8 +61,8 @@ impl<const N: usize> Corners<N> {
             windows,
             selections,
             stops_allowed: matches!(settings.method, Method::Kcs | Method::ExactStop),
-            lattice: Lattice::new(size, burst),
-            legs: VecDeque::with_capacity(burst + 3 * size + 8),
+            lattice: Lattice::new(size.max(FEWEST_WAYS), burst),
+            legs: VecDeque::with_capacity(burst + 3 * size + 2 * FEWEST_WAYS),
             offered: 0,
             overlapping: overlapping_of(settings.method),
             limits: settings.limits,
@@ -293,6 +293,12 @@ impl<const N: usize> Corners<N> {
 /// tried overlapping.
 const OVERLAPPING_REACH: f64 = 0.3;
 
+/// Shortest window: two corners, so that one can be seen from the other.
+const SHORTEST_WINDOW: usize = 2;
+
+/// Fewest corners among whose motions the fastest way is sought.
+const FEWEST_WAYS: usize = 16;
+
 /// How a path begins.
 const AT_REST: Choice = Choice {
     shape: TurnShape::STOP,
@@ -303,7 +309,7 @@ const AT_REST: Choice = Choice {
 fn overlapping_of(method: Method) -> &'static [f64] {
     match method {
         Method::Kcs => &[1.0],
-        Method::KcsGlobal => &[1.0, 0.8, 0.64, 0.5],
+        Method::KcsGlobal => &[1.0, 0.85, 0.72, 0.61, 0.52, 0.44],
         _ => &[],
     }
 }

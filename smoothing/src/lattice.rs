@@ -13,10 +13,13 @@ use std::collections::VecDeque;
 use toolglide_profiles::Connection;
 
 /// Most candidates of one corner.
-pub(crate) const MOST_CANDIDATES: usize = 6;
+pub(crate) const MOST_CANDIDATES: usize = 8;
 
 /// Share of a move that two corners must leave free, lest they are tried overlapping.
 const OVERLAPPING: f64 = 0.4;
+
+/// Times to stop by which a way that does not stop may lie behind the cheapest.
+const STOPS_BEHIND: f64 = 4.0;
 
 /// Corners between two attempts to commit.
 const PATIENCE: usize = 16;
@@ -254,12 +257,18 @@ impl Column {
             .unwrap_or_else(|| self.cheapest())
     }
 
-    /// Gives up what lies behind the cheapest safe one by more than a time.
-    fn give_up(&mut self, behind: f64) {
-        let most = self.costs[self.cheapest()] + behind;
-        for cost in &mut self.costs[..self.count] {
-            if *cost > most {
-                *cost = f64::INFINITY;
+    /// Gives up what lies too far behind the cheapest safe one, given the time to stop: that one could
+    /// have stopped, or stopped and started again.
+    fn give_up(&mut self, time_to_stop: f64) {
+        let least = self.costs[self.cheapest()];
+        for candidate in 0..self.count {
+            let times = if self.shapes[candidate].is_stop() {
+                1.0
+            } else {
+                STOPS_BEHIND
+            };
+            if self.costs[candidate] > least + times * time_to_stop {
+                self.costs[candidate] = f64::INFINITY;
             }
         }
     }

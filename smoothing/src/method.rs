@@ -61,7 +61,7 @@ pub struct Settings<const N: usize> {
     pub limits: Limits<N>,
     /// Which corner motions may be used.
     pub method: Method,
-    /// Corners that the look-ahead window holds, at least 1. A window shorter than the way to a
+    /// Corners that the look-ahead window holds, at least 2. A window shorter than the way to a
     /// stop costs time, never safety.
     pub window: usize,
 }

@@ -1,8 +1,8 @@
 //! Which stretches of a path are travelled with superposed corners.
 //!
 //! Source: ours. The path is cut where it turns sharply or must stop; each stretch between is planned
-//! corner by corner and with superposed corners, both from rest to rest, and the faster counts, less
-//! what resting at its ends costs against turning there. Not here: either plan.
+//! corner by corner, with superposed corners, and, where it has arcs, move by move, each from rest to
+//! rest, and the fastest counts. Not here: the plans.
 
 use crate::corners::Corners;
 use crate::leg::{Dwell, Leg};
@@ -22,9 +22,6 @@ const SHARP: f64 = 0.216;
 /// Fewest legs of a stretch worth trying.
 const FEWEST_LEGS: usize = 4;
 
-/// Share of the time to stop and start that turning a sharp corner saves against resting at it.
-const SAVED_BY_TURNING: f64 = 0.25;
-
 /// How much faster than the plan by corners a stretch at the feedrate would have to be.
 const WORTH_TRYING: f64 = 0.97;
 
@@ -33,8 +30,6 @@ const WORTH_TRYING: f64 = 0.97;
 pub(crate) struct Stretches<const N: usize> {
     merger: Merger<N>,
     legs: Vec<Leg<N>>,
-    /// Whether the motion rests where the stretch begins, whatever is chosen.
-    from_rest: bool,
     corners: Corners<N>,
     trial: Corners<N>,
     superposer: Superposer<N>,
@@ -58,12 +53,11 @@ impl<const N: usize> Stretches<N> {
         Self {
             merger: Merger::new(start, settings.limits, FINE_SHARE),
             legs: Vec::with_capacity(MOST_LEGS),
-            from_rest: true,
             corners: Corners::new(start, settings, MOST_LEGS),
             trial: Corners::new(start, settings, MOST_LEGS),
             superposer: Superposer::new(settings.limits),
             end: start,
-            events: VecDeque::with_capacity(8),
+            events: VecDeque::with_capacity(2 * MOST_LEGS + 8),
         }
     }
 
@@ -129,8 +123,9 @@ impl<const N: usize> Stretches<N> {
                 Event::Leg(leg) => self.take_leg(leg),
                 Event::Rest if self.legs.is_empty() => self.corners.rest(),
                 Event::Rest => {
-                    self.settle(true);
+                    // After whatever the stretch may put before it.
                     self.events.push_front(Event::Rest);
+                    self.settle();
                 }
                 Event::Dwell(pause) => self.corners.dwell(pause),
                 Event::Close => self.corners.close(),
@@ -142,65 +137,112 @@ impl<const N: usize> Stretches<N> {
         if let Some(last) = self.legs.last() {
             let half_sine = 0.5 * (leg.direction - last.direction).norm();
             if half_sine > SHARP || self.legs.len() >= MOST_LEGS {
-                self.settle(false);
-                if !self.superposer.is_done() {
-                    self.events.push_front(Event::Leg(leg));
-                    return;
-                }
+                self.events.push_front(Event::Leg(leg));
+                self.settle();
+                return;
             }
         }
         self.legs.push(leg);
     }
 
     /// Plans the stretch that has been collected.
-    fn settle(&mut self, to_rest: bool) {
-        let from_rest = self.from_rest;
-        self.from_rest = to_rest;
-        let Some(last) = self.legs.last() else {
-            return;
-        };
-        let end = last.end;
-        if self.legs.len() >= FEWEST_LEGS && self.superpose(from_rest, to_rest) {
-            self.corners.close();
-            self.end = end;
-            self.from_rest = true;
-        } else {
-            for leg in &self.legs {
-                self.corners.push(vertex_of(leg));
+    fn settle(&mut self) {
+        let legs = std::mem::take(&mut self.legs);
+        if let Some(last) = legs.last() {
+            let choice = if legs.len() < FEWEST_LEGS {
+                Choice::Corners
+            } else {
+                self.choose(&legs)
+            };
+            if choice != Choice::Superposed {
+                self.superposer.discard();
+            }
+            match choice {
+                Choice::Corners => {
+                    for leg in &legs {
+                        self.corners.push(vertex_of(leg));
+                    }
+                }
+                Choice::Superposed => {
+                    self.corners.close();
+                    self.end = last.end;
+                }
+                Choice::Apart => {
+                    let mut next: Option<&Leg<N>> = None;
+                    for leg in legs.iter().rev() {
+                        if next.is_some_and(|next| begins_a_move(leg, next)) {
+                            self.events.push_front(Event::Rest);
+                        }
+                        self.events.push_front(Event::Leg(*leg));
+                        next = Some(leg);
+                    }
+                }
             }
         }
+        self.legs = legs;
         self.legs.clear();
     }
 
-    /// Plans the stretch with superposed corners where that is faster.
-    fn superpose(&mut self, from_rest: bool, to_rest: bool) -> bool {
-        let (mut at_feedrate, mut slowest) = (0.0, 0.0_f64);
-        for leg in &self.legs {
-            at_feedrate += leg.length / leg.limits.velocity;
-            let stop = leg.limits.velocity / leg.limits.acceleration
-                + leg.limits.acceleration / leg.limits.jerk;
-            slowest = slowest.max(stop);
+    /// How a stretch is travelled fastest. With superposed corners it is planned when that is chosen.
+    fn choose(&mut self, legs: &[Leg<N>]) -> Choice {
+        let ideal = Ideal::of(legs);
+        let by_corners = self.by_corners(legs);
+        let superposed = self.superpose(legs, &ideal, by_corners);
+        let best = superposed.unwrap_or(by_corners);
+        // Stops are among the choices at every corner, but not inside an arc, which begins and ends
+        // afresh where the motion stops beside it.
+        let has_arc = legs
+            .windows(2)
+            .any(|pair| pair[0].serves.first == pair[1].serves.last);
+        let several =
+            legs.first().map(|leg| leg.serves.first) != legs.last().map(|leg| leg.serves.last);
+        if has_arc && several {
+            let apart: f64 = legs
+                .chunk_by(|leg, next| !begins_a_move(leg, next))
+                .map(|group| self.alone(group))
+                .sum();
+            if apart < best {
+                return Choice::Apart;
+            }
+            if superposed.is_some() {
+                // The moves by themselves have taken the place of the plan.
+                self.superpose(legs, &ideal, by_corners);
+            }
         }
-        let turned = f64::from(u8::from(!from_rest) + u8::from(!to_rest));
-        let penalty = SAVED_BY_TURNING * slowest * turned;
-        let by_corners = self.by_corners();
-        let most = WORTH_TRYING * by_corners - penalty;
-        if at_feedrate + slowest > most {
-            return false;
+        if superposed.is_some() {
+            Choice::Superposed
+        } else {
+            Choice::Corners
         }
-        self.superposer
-            .plan(&self.legs, at_feedrate, by_corners - penalty)
-            .is_some()
     }
 
-    /// Duration of the stretch planned corner by corner from rest to rest.
-    fn by_corners(&mut self) -> f64 {
-        let Some(first) = self.legs.first() else {
+    /// Duration of a stretch by itself.
+    fn alone(&mut self, legs: &[Leg<N>]) -> f64 {
+        let by_corners = self.by_corners(legs);
+        if legs.len() < FEWEST_LEGS {
+            return by_corners;
+        }
+        self.superpose(legs, &Ideal::of(legs), by_corners)
+            .unwrap_or(by_corners)
+    }
+
+    /// Plans a stretch with superposed corners; its duration, when that is worth while and less than
+    /// `most`.
+    fn superpose(&mut self, legs: &[Leg<N>], ideal: &Ideal, most: f64) -> Option<f64> {
+        if ideal.at_feedrate + ideal.stop > WORTH_TRYING * most {
+            return None;
+        }
+        self.superposer.plan(legs, ideal.at_feedrate, most)
+    }
+
+    /// Duration of a stretch planned corner by corner from rest to rest.
+    fn by_corners(&mut self, legs: &[Leg<N>]) -> f64 {
+        let Some(first) = legs.first() else {
             return 0.0;
         };
         self.trial.restart(first.start);
         let mut duration = 0.0;
-        for leg in &self.legs {
+        for leg in legs {
             self.trial.push(vertex_of(leg));
             while let Some(piece) = self.trial.pull() {
                 duration += piece.duration();
@@ -212,6 +254,50 @@ impl<const N: usize> Stretches<N> {
         }
         duration
     }
+}
+
+/// How a stretch is travelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Choice {
+    /// Corner by corner.
+    Corners,
+    /// With superposed corners.
+    Superposed,
+    /// Each move by itself, from rest to rest.
+    Apart,
+}
+
+/// What a stretch would take without corners.
+struct Ideal {
+    /// The whole way at the feedrate.
+    at_feedrate: f64,
+    /// Starting at one end and stopping at the other.
+    stop: f64,
+}
+
+impl Ideal {
+    fn of<const N: usize>(legs: &[Leg<N>]) -> Self {
+        let at_feedrate = legs
+            .iter()
+            .map(|leg| leg.length / leg.limits.velocity)
+            .sum();
+        let ends = [legs.first(), legs.last()];
+        let stop = ends
+            .iter()
+            .flatten()
+            .map(|leg| {
+                let limits = &leg.limits;
+                let once = limits.velocity / limits.acceleration;
+                0.5 * (once + (limits.acceleration / limits.jerk).min(once))
+            })
+            .sum();
+        Self { at_feedrate, stop }
+    }
+}
+
+/// Whether a move of the path begins with `next`.
+fn begins_a_move<const N: usize>(leg: &Leg<N>, next: &Leg<N>) -> bool {
+    leg.serves.last < next.serves.first
 }
 
 fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {

@@ -113,6 +113,12 @@ impl<const N: usize> Superposer<N> {
         self.next >= self.best.pieces()
     }
 
+    /// Forgets the stretch that was planned.
+    pub(crate) fn discard(&mut self) {
+        self.best.controls.clear();
+        self.next = 0;
+    }
+
     fn attempt(&mut self, filter: &Filter, most: f64) -> bool {
         if !self.pace.survey(&self.curve, &self.limits, filter) {
             return false;
