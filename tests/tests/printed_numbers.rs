@@ -83,7 +83,7 @@ fn program(name: &str, tolerance: f64) -> Option<f64> {
     let limits = Limits::<3>::uniform(1_000.0, 2_000.0, 5e4).unwrap();
     let moves = corpus::moves(&text, name, tolerance).unwrap();
     let report = plan_and_judge(&moves, &Settings::new(limits), limits).report;
-    println!("{name} {:.4} s", report.cycle_time);
+    eprintln!("{name} {:.4} s", report.cycle_time);
     assert!(report.passes(), "{name}: {:#?}", report.examples);
     Some(report.cycle_time)
 }
