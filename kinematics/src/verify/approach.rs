@@ -5,7 +5,7 @@
 //! which points matter.
 
 use super::bernstein::{Cubic, halves};
-use crate::numeric::{JUDGE_HALVINGS, JUDGE_PRECISION, LENGTH_SLACK};
+use crate::numeric::{COORDINATE_ROUNDING, JUDGE_HALVINGS, JUDGE_PRECISION, LENGTH_SLACK};
 use crate::vector::Vector;
 
 /// Newton steps that sharpen a closest point: the third already squares away what is left.
@@ -54,36 +54,74 @@ pub(super) fn closest<const N: usize>(
     (!search.near.at.is_nan()).then_some(search.near)
 }
 
-/// The first place from `from` on where `curve` is within `distance` of `point`.
+/// The first place from `from` on where `curve` is within `distance` of `point`, or at most
+/// [`ENTRY_PRECISION`] before it.
 pub(super) fn enters<const N: usize>(
     curve: &Cubic<N>,
     point: &Vector<N>,
     distance: f64,
     from: f64,
 ) -> Option<f64> {
-    let away = |u: f64| (curve.at(u) - point).norm();
-    if away(from) <= distance {
-        return Some(from);
-    }
+    let curve = curve.relative_to(point);
     let rest = if from > 0.0 {
         curve.split(from).1
     } else {
-        *curve
+        curve
     };
-    let near = closest(&rest, point, f64::INFINITY, distance)?;
-    if near.distance > distance {
-        return None;
-    }
-    let (mut outside, mut inside) = (from, from + near.at * (1.0 - from));
-    while inside - outside > ENTRY_PRECISION {
-        let middle = 0.5 * (outside + inside);
-        if away(middle) <= distance {
-            inside = middle;
-        } else {
-            outside = middle;
+    let squares = rest.squared_norm();
+    let largest = squares.iter().copied().fold(0.0, f64::max);
+    let entry = Entry {
+        curve: &rest,
+        distance,
+        limit: distance * distance + COORDINATE_ROUNDING * largest,
+    };
+    let at = entry.first(&squares, 0.0, 1.0, JUDGE_HALVINGS)?;
+    Some(from + at * (1.0 - from))
+}
+
+/// Search of the first place within a distance of the origin.
+struct Entry<'a, const N: usize> {
+    curve: &'a Cubic<N>,
+    distance: f64,
+    /// Square of the distance, with room for the rounding of squares.
+    limit: f64,
+}
+
+impl<const N: usize> Entry<'_, N> {
+    fn first(&self, squares: &[f64; 7], from: f64, to: f64, halvings: u32) -> Option<f64> {
+        let lowest = squares.iter().copied().fold(f64::INFINITY, f64::min);
+        if lowest > self.limit {
+            return None;
         }
+        let inside = |at: f64| self.curve.at(at).norm() <= self.distance;
+        if inside(from) {
+            return Some(from);
+        }
+        if halvings == 0 || to - from < ENTRY_PRECISION {
+            let closest = newton(self.curve, 0.5 * (from + to)).clamp(from, to);
+            // The early side: a corner is never found out of order by the width of a part.
+            return (inside(closest) || inside(to)).then_some(from);
+        }
+        let middle = 0.5 * (from + to);
+        let (left, right) = halves(squares);
+        self.first(&left, from, middle, halvings - 1)
+            .or_else(|| self.first(&right, middle, to, halvings - 1))
     }
-    Some(inside)
+}
+
+/// Newton's method on the derivative of the squared distance from the origin.
+fn newton<const N: usize>(curve: &Cubic<N>, guess: f64) -> f64 {
+    let mut u = guess;
+    for _ in 0..POLISHING_STEPS {
+        let (position, slope) = (curve.at(u), curve.slope(u));
+        let curvature = slope.norm_squared() + position.dot(&curve.bend(u));
+        let step = position.dot(&slope) / curvature;
+        if !(curvature > 0.0 && step.is_finite()) {
+            break;
+        }
+        u = (u - step).clamp(0.0, 1.0);
+    }
+    u
 }
 
 struct Search<'a, const N: usize> {
@@ -104,19 +142,8 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// Newton's method on the derivative of the squared distance.
     fn polish(&mut self, guess: f64) {
-        let mut u = guess;
-        for _ in 0..POLISHING_STEPS {
-            let (position, slope) = (self.curve.at(u), self.curve.slope(u));
-            let curvature = slope.norm_squared() + position.dot(&self.curve.bend(u));
-            let step = position.dot(&slope) / curvature;
-            if !(curvature > 0.0 && step.is_finite()) {
-                break;
-            }
-            u = (u - step).clamp(0.0, 1.0);
-        }
-        self.try_at(u);
+        self.try_at(newton(self.curve, guess));
     }
 
     fn descend(&mut self, squares: &[f64; 7], from: f64, to: f64, halvings: u32) {
@@ -126,7 +153,10 @@ impl<const N: usize> Search<'_, N> {
         }
         let room = best - (JUDGE_PRECISION * best).max(LENGTH_SLACK);
         let lowest = squares.iter().copied().fold(f64::INFINITY, f64::min);
-        if !(room > 0.0 && lowest < room * room) && best.is_finite() {
+        let better = room > 0.0 && lowest < room * room;
+        // Whether `enough` is reached is decided, not left to the precision of the value.
+        let decides = lowest < self.enough * self.enough;
+        if !better && !decides && best.is_finite() {
             return;
         }
         if squares.windows(2).all(|pair| pair[1] <= pair[0]) {

@@ -63,10 +63,11 @@ impl<const N: usize> Chord<N> {
         (self.to - self.from).norm()
     }
 
-    /// Whether the motion moves away from a point and is farther than a distance already.
+    /// Whether the motion moves away from a point and is farther than a distance already; never
+    /// where the points are so far apart that it may have been nowhere near.
     pub(super) fn leaves(&self, point: &Vector<N>, distance: f64) -> bool {
         let away = (self.to - point).norm();
-        away > distance + self.slack && away > (self.from - point).norm()
+        self.slack <= distance && away > distance + self.slack && away > (self.from - point).norm()
     }
 
     /// How far a point certainly is from the motion, and when it is closest.

@@ -48,6 +48,8 @@ pub(super) struct Leg<const N: usize> {
     pub(super) approach_time: f64,
     pub(super) stopped: bool,
     pub(super) rested: f64,
+    /// The rest going on now.
+    pub(super) resting: f64,
     /// How many points inside an arc were passed, and the time of the last.
     pub(super) waypoints_passed: u64,
 }
@@ -93,6 +95,7 @@ impl<const N: usize> Leg<N> {
             approach_time: 0.0,
             stopped: false,
             rested: 0.0,
+            resting: 0.0,
             waypoints_passed: 0,
         }
     }

@@ -150,13 +150,7 @@ impl Tracker {
                 continue;
             }
             if leg.stops {
-                // A dwell that was begun and is not gone on with is over, however short.
-                let over = if leg.rests(chord, &mut spare) {
-                    leg.has_dwelt()
-                } else {
-                    leg.rested > 0.0
-                };
-                if is_last || !over {
+                if !leg.rests(chord, &mut spare) || !leg.has_dwelt() || is_last {
                     return;
                 }
             } else {
@@ -303,14 +297,16 @@ impl<const N: usize> Leg<N> {
     /// Takes note of a rest at the end of this move; a dwell uses up some of the `spare` time.
     fn rests(&mut self, chord: &Chord<N>, spare: &mut f64) -> bool {
         if !chord.may_rest_at(self) {
+            self.resting = 0.0;
             return false;
         }
         self.stopped = true;
         let (distance, time) = chord.distance(&self.end);
         self.comes_near(distance, time);
         if let Some(duration) = self.dwell {
-            let given = spare.min((duration - self.rested).max(0.0));
-            self.rested += given;
+            let given = spare.min((duration - self.resting).max(0.0));
+            self.resting += given;
+            self.rested = self.rested.max(self.resting);
             *spare -= given;
         }
         true

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::verify::approach::closest;
+use crate::verify::approach::{closest, enters};
 use crate::verify::bernstein::{Cubic, Largest, squared_speed};
 use crate::verify::deviation;
 use crate::verify::route::Route;
@@ -93,6 +93,25 @@ proptest! {
         prop_assert!(found.distance <= sampled * (1.0 + 2e-6) + 2e-9, "{found:?} {sampled}");
         prop_assert!(((curve.at(found.at) - to).norm() - found.distance).abs() < 1e-12, "{found:?}");
         prop_assert!(closest(&curve, &to, 0.5 * found.distance, 0.0).is_none(), "no closer");
+    }
+
+    #[test]
+    fn motion_that_uses_its_whole_tolerance_passes_the_corner(
+        curve in curve(), to in point(), from in 0.0..1.0_f64,
+    ) {
+        let near = closest(&curve, &to, f64::INFINITY, 0.0).unwrap();
+        // The polished minimum is a little below the value that a search of its own would accept.
+        let allowed = near.distance * (1.0 + 1e-9) + 1e-9;
+        let from = from * near.at;
+        let at = enters(&curve, &to, allowed, from);
+        prop_assert!(at.is_some_and(|at| at >= from && (curve.at(at) - to).norm() <= allowed + 1e-4), "{at:?}");
+        let sampled = shares().find(|u| *u >= from && (curve.at(*u) - to).norm() <= allowed);
+        prop_assert!(at <= sampled.or(at), "{at:?} is not the first, {sampled:?} is before");
+        prop_assert!(enters(&curve, &to, near.distance * (1.0 - 3e-6) - 3e-9, from).is_none(), "out of reach");
+        let wider = 1.5 * near.distance;
+        let first = enters(&curve, &to, wider, 0.0);
+        let sampled = shares().find(|u| (curve.at(*u) - to).norm() <= wider);
+        prop_assert!(first <= sampled.or(first), "{first:?} {sampled:?}");
     }
 
     #[test]
