@@ -51,7 +51,7 @@ fn made(at: Vector<2>, any: &(Vector<2>, Vector<2>, u32, f64, f64)) -> Option<Mo
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn no_piece_makes_the_judge_panic(

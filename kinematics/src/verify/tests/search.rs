@@ -16,14 +16,14 @@ fn curve() -> impl Strategy<Value = Cubic<3>> {
     [point(), point(), point(), point()].prop_map(|points| Cubic { points })
 }
 
-const STEPS: u32 = 500;
+const STEPS: u32 = 250;
 
 fn shares() -> impl Iterator<Item = f64> {
     (0..=STEPS).map(|k| f64::from(k) / f64::from(STEPS))
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
     fn the_deviation_from_lines_and_an_arc_is_the_largest_sampled(
@@ -58,8 +58,8 @@ proptest! {
             sampled = [sampled[0].max(nearest[0]), sampled[1].max(nearest[1])];
         }
         let measures = found.bounds.into_iter().zip(found.attained).zip(sampled);
-        // Neighbouring samples are at most 32/500 apart along the curve; tolerances are above 0.01.
-        for (((bound, attained), sampled), apart) in measures.zip([0.07, 7.0]) {
+        // Neighbouring samples are at most 32/250 apart along the curve; tolerances are above 0.01.
+        for (((bound, attained), sampled), apart) in measures.zip([0.13, 13.0]) {
             prop_assert!(bound >= sampled * (1.0 - 1e-12), "{bound} {sampled}");
             prop_assert!(bound <= attained.value * (1.0 + 2e-6) + 1e-6, "{found:?}");
             prop_assert!(bound <= sampled + apart, "{bound} {sampled}");
@@ -126,6 +126,6 @@ proptest! {
         };
         let sampled = shares().map(speed).fold(0.0, f64::max);
         prop_assert!(found >= sampled * (1.0 - 1e-12), "{found} {sampled}");
-        prop_assert!(found <= sampled * (1.0 + 1e-2) + 1e-12, "{found} {sampled}");
+        prop_assert!(found <= sampled * (1.0 + 3e-2) + 1e-12, "{found} {sampled}");
     }
 }
