@@ -5,7 +5,7 @@
 
 use crate::turn::{Form, Turn, TurnShape};
 use toolglide_kinematics::{Corner, Limits, largest_multiple};
-use toolglide_profiles::{BlendError, Blender};
+use toolglide_profiles::{BlendError, Blender, Boundary};
 
 /// Turns a corner at one speed, exchanging the incoming velocity for the outgoing one along an
 /// S-curve that saturates the jerk, and the acceleration where it lasts long enough.
@@ -50,13 +50,7 @@ impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
         let feedrate = corner.speed_in.min(corner.speed_out);
         let size = turned.norm();
         if size <= crate::STRAIGHT {
-            return Ok(Turn::new(
-                TurnShape {
-                    speed: feedrate,
-                    ..TurnShape::STOP
-                },
-                *corner,
-            ));
+            return Ok(Turn::new(TurnShape::through(feedrate), *corner));
         }
         let acceleration = largest_multiple(&turned, self.limits.acceleration());
         let jerk = largest_multiple(&turned, self.limits.jerk());
@@ -65,13 +59,15 @@ impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
         let (ramp, hold) = ramps(speed, acceleration, jerk);
         let duration = 2.0 * ramp + hold;
         Ok(Turn::new(
-            TurnShape {
-                speed,
-                acceleration: 0.0,
-                reach: 0.5 * speed * duration,
+            TurnShape::symmetric(
+                Boundary {
+                    distance: 0.5 * speed * duration,
+                    speed,
+                    acceleration: 0.0,
+                },
                 duration,
-                form: Form::Interrupted { ramp },
-            },
+                Form::Interrupted { ramp },
+            ),
             *corner,
         ))
     }

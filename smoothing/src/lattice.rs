@@ -296,14 +296,14 @@ impl Column {
             let mut best = f64::INFINITY;
             for origin in 0..last.count {
                 let from = &last.shapes[origin];
-                let length = link.length - from.reach - to.reach;
+                let length = link.length - from.exit.distance - to.entry.distance;
                 let before = last.costs[origin];
                 let halves = 0.5 * (from.duration + to.duration);
                 // No way is shorter than the whole length at the feedrate.
                 if length >= 0.0 && before + halves + length / link.limits.velocity < best {
                     let connection = Connection {
-                        from: [from.speed, from.acceleration],
-                        to: [to.speed, to.acceleration],
+                        from: [from.exit.speed, from.exit.acceleration],
+                        to: [to.entry.speed, to.entry.acceleration],
                         limits: link.limits,
                     };
                     if let Some(duration) = connection.duration_over(length) {

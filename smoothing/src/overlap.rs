@@ -35,11 +35,13 @@ impl<const N: usize> Middle<N> {
         incoming: &Vector<N>,
         outgoing: &Vector<N>,
     ) -> Self {
-        let turned = outgoing - incoming;
         Self {
-            position: point + turned * (0.125 * shape.reach),
-            velocity: (incoming + outgoing) * (0.25 * shape.speed),
-            acceleration: turned * (0.5 * shape.acceleration),
+            position: point
+                + (outgoing * shape.exit.distance - incoming * shape.entry.distance) * 0.125,
+            velocity: (incoming * shape.entry.speed + outgoing * shape.exit.speed) * 0.25,
+            acceleration: (outgoing * shape.exit.acceleration
+                - incoming * shape.entry.acceleration)
+                * 0.5,
         }
     }
 }

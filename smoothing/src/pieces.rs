@@ -19,11 +19,12 @@ pub(crate) fn unroll_leg<const N: usize>(
     mut take: impl FnMut(Piece<N>),
 ) {
     let connection = Connection {
-        from: [from.speed, from.acceleration],
-        to: [to.speed, to.acceleration],
+        from: [from.exit.speed, from.exit.acceleration],
+        to: [to.entry.speed, to.entry.acceleration],
         limits: leg.limits,
     };
-    let length = (leg.length - from.reach - to.reach).max(0.0);
+    let (reach, left) = (from.exit.distance, to.entry.distance);
+    let length = (leg.length - reach - left).max(0.0);
     let feed = match Feed::over(length, &connection) {
         Ok(feed) => feed,
         Err(error) => {
@@ -34,8 +35,8 @@ pub(crate) fn unroll_leg<const N: usize>(
     let Some(last) = feed.phases().iter().rposition(|phase| phase.duration > 0.0) else {
         return;
     };
-    let end = if to.reach > 0.0 {
-        leg.end - leg.direction * to.reach
+    let end = if left > 0.0 {
+        leg.end - leg.direction * left
     } else {
         leg.end
     };
@@ -52,7 +53,7 @@ pub(crate) fn unroll_leg<const N: usize>(
         }
         let state = feed.starts()[index];
         let start = Sample {
-            position: at(from.reach + state.position),
+            position: at(reach + state.position),
             velocity: leg.direction * state.velocity,
             acceleration: leg.direction * state.acceleration,
             jerk: leg.direction * state.jerk,
@@ -60,7 +61,7 @@ pub(crate) fn unroll_leg<const N: usize>(
         let piece_end = if index == last {
             end
         } else {
-            at(from.reach + state.after(phase.duration).position)
+            at(reach + state.after(phase.duration).position)
         };
         take(Piece::new(&start, phase.duration, piece_end, leg.serves));
     }

@@ -9,7 +9,7 @@ use crate::stop_start::StopStart;
 use crate::turn::TurnShape;
 use crate::uninterrupted::Uninterrupted;
 use toolglide_kinematics::{Corner, Limits, Tangential};
-use toolglide_profiles::{Blender, Rise};
+use toolglide_profiles::{Blender, Boundary, Rise};
 
 /// How the motions of one window are selected.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,11 @@ pub(crate) struct Selection<const N: usize> {
     interrupted: Interrupted<N>,
     uninterrupted: Uninterrupted<N>,
     stop_start: StopStart<N>,
+    unequal: [Uninterrupted<N>; UNEQUAL.len()],
 }
+
+/// Ratios of the speeds after and before a corner that are tried beside equal ones.
+const UNEQUAL: [f64; 4] = [0.5, 0.75, 1.0 / 0.75, 2.0];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -47,6 +51,7 @@ impl<const N: usize> Selection<N> {
                 interrupted: Interrupted::new(settings.limits),
                 uninterrupted: Uninterrupted::new(settings.limits),
                 stop_start: StopStart::new(settings.limits),
+                unequal: UNEQUAL.map(|ratio| Uninterrupted::unequal(settings.limits, ratio)),
             })
             .collect()
     }
@@ -74,7 +79,11 @@ impl<const N: usize> Selection<N> {
             Kind::Fastest => {
                 let stop_start = self.stop_start.blend(corner).map(|turn| *turn.shape());
                 let mut fastest = interrupted();
-                for other in [uninterrupted(), stop_start] {
+                let unequal = self
+                    .unequal
+                    .iter()
+                    .map(|blender| blender.blend(corner).map(|turn| *turn.shape()));
+                for other in [uninterrupted(), stop_start].into_iter().chain(unequal) {
                     fastest = match (fastest, other) {
                         (Ok(one), Ok(other)) => Ok(self.faster(corner, before, after, one, other)),
                         (one, _) => one,
@@ -95,16 +104,12 @@ impl<const N: usize> Selection<N> {
         one: TurnShape,
         other: TurnShape,
     ) -> TurnShape {
-        let sides = [
-            (self.limits.along(&corner.incoming), corner.speed_in, before),
-            (self.limits.along(&corner.outgoing), corner.speed_out, after),
-        ];
+        let before = (self.limits.along(&corner.incoming), corner.speed_in, before);
+        let after = (self.limits.along(&corner.outgoing), corner.speed_out, after);
         let loss = |shape: &TurnShape| {
-            sides
-                .iter()
-                .fold(shape.duration, |loss, (limits, feedrate, length)| {
-                    loss + lost_beside(shape, limits, *feedrate, *length)
-                })
+            shape.duration
+                + lost_beside(&shape.entry, &before.0, before.1, before.2)
+                + lost_beside(&shape.exit, &after.0, after.1, after.2)
         };
         if loss(&other) < loss(&one) {
             other
@@ -116,16 +121,16 @@ impl<const N: usize> Selection<N> {
 
 /// Time from the boundary of a turn to the speed that a move reaches, less the time that the whole
 /// way from the corner would take at that speed.
-fn lost_beside(shape: &TurnShape, limits: &Tangential, feedrate: f64, length: f64) -> f64 {
-    let least = Rise::least_peak(shape.speed, shape.acceleration, limits.jerk);
+fn lost_beside(boundary: &Boundary, limits: &Tangential, feedrate: f64, length: f64) -> f64 {
+    let least = Rise::least_peak(boundary.speed, boundary.acceleration, limits.jerk);
     let reached = (0.25 * limits.jerk * length * length).cbrt(); // rest to rest over the move
     let peak = reached.min(feedrate).max(least);
     let rise = Rise::to_peak(
-        shape.speed,
-        shape.acceleration,
+        boundary.speed,
+        boundary.acceleration,
         peak,
         limits.acceleration,
         limits.jerk,
     );
-    rise.duration() - (rise.distance + shape.reach) / peak
+    rise.duration() - (rise.distance + boundary.distance) / peak
 }

@@ -8,7 +8,7 @@
 use crate::turn::{Form, Turn, TurnShape};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, Limits, Vector, largest_multiple};
-use toolglide_profiles::{BlendError, Blender};
+use toolglide_profiles::{BlendError, Blender, Boundary};
 
 /// Turns a corner by a stop along the incoming and a start along the outgoing move, which overlap
 /// completely.
@@ -104,13 +104,15 @@ impl<const N: usize> Blender<Corner<N>> for StopStart<N> {
             });
         }
         Ok(Turn::new(
-            TurnShape {
-                speed: start.speed_at(duration),
-                acceleration,
-                reach: start.distance_at(duration),
+            TurnShape::symmetric(
+                Boundary {
+                    distance: start.distance_at(duration),
+                    speed: start.speed_at(duration),
+                    acceleration,
+                },
                 duration,
-                form: Form::StopStart { ramp: start.ramp() },
-            },
+                Form::StopStart { ramp: start.ramp() },
+            ),
             *corner,
         ))
     }

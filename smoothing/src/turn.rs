@@ -29,15 +29,13 @@ pub enum Form {
     },
 }
 
-/// A corner motion without its geometry, symmetric about the corner.
+/// A corner motion without its geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurnShape {
-    /// Speed at both boundaries.
-    pub speed: f64,
-    /// Acceleration at both boundaries: deceleration on the way in.
-    pub acceleration: f64,
-    /// Distance of both boundaries from the corner.
-    pub reach: f64,
+    /// Where and how it leaves the incoming move.
+    pub entry: Boundary,
+    /// Where and how it joins the outgoing move.
+    pub exit: Boundary,
     /// How long the corner takes.
     pub duration: f64,
     /// How the velocity turns.
@@ -46,13 +44,29 @@ pub struct TurnShape {
 
 impl TurnShape {
     /// A full stop at the corner itself.
-    pub const STOP: Self = Self {
-        speed: 0.0,
-        acceleration: 0.0,
-        reach: 0.0,
-        duration: 0.0,
-        form: Form::Through,
-    };
+    pub const STOP: Self = Self::through(0.0);
+
+    /// Straight on at a speed, without a turn of its own.
+    #[must_use]
+    pub const fn through(speed: f64) -> Self {
+        let boundary = Boundary {
+            distance: 0.0,
+            speed,
+            acceleration: 0.0,
+        };
+        Self::symmetric(boundary, 0.0, Form::Through)
+    }
+
+    /// A turn that leaves one move as it joins the other.
+    #[must_use]
+    pub const fn symmetric(boundary: Boundary, duration: f64, form: Form) -> Self {
+        Self {
+            entry: boundary,
+            exit: boundary,
+            duration,
+            form,
+        }
+    }
 
     /// The same turn with all times multiplied by `scale` (0 to 1) at the same jerk.
     ///
@@ -61,11 +75,9 @@ impl TurnShape {
     #[must_use]
     #[inline]
     pub fn scaled(&self, scale: f64) -> Self {
-        let square = scale * scale;
         Self {
-            speed: self.speed * square,
-            acceleration: self.acceleration * scale,
-            reach: self.reach * square * scale,
+            entry: scaled(&self.entry, scale),
+            exit: scaled(&self.exit, scale),
             duration: self.duration * scale,
             form: match self.form {
                 Form::Interrupted { ramp } => Form::Interrupted { ramp: ramp * scale },
@@ -78,13 +90,23 @@ impl TurnShape {
     /// Whether the motion rests at the corner.
     #[must_use]
     pub fn is_stop(&self) -> bool {
-        self.speed <= 0.0
+        self.entry.speed <= 0.0
     }
 
     /// Whether the jerk is constant over the whole corner.
     #[must_use]
     pub fn is_uninterrupted(&self) -> bool {
         self.form == Form::Uninterrupted
+    }
+}
+
+#[inline]
+fn scaled(boundary: &Boundary, scale: f64) -> Boundary {
+    let square = scale * scale;
+    Boundary {
+        distance: boundary.distance * square * scale,
+        speed: boundary.speed * square,
+        acceleration: boundary.acceleration * scale,
     }
 }
 
@@ -115,12 +137,16 @@ impl<const N: usize> Turn<N> {
     /// Unrolls a part of the motion, phase by phase; nothing for a full stop.
     pub fn pieces(&self, part: Part, serves: Serves, mut take: impl FnMut(Piece<N>)) {
         let TurnShape {
-            speed,
-            acceleration,
-            reach,
+            entry,
+            exit,
             duration,
             form,
         } = self.shape;
+        let Boundary {
+            speed,
+            acceleration,
+            ..
+        } = entry;
         if duration <= 0.0 {
             return;
         }
@@ -136,7 +162,9 @@ impl<const N: usize> Turn<N> {
         let phases = match form {
             Form::Through => return,
             Form::Uninterrupted => {
-                let half = (incoming + outgoing) * (acceleration / duration);
+                // Summed before it is multiplied: near a reversal the directions all but cancel.
+                let ratio = exit.acceleration / acceleration;
+                let half = (incoming + outgoing * ratio) * (acceleration / duration);
                 [(0.5 * duration, half), (0.0, none), (0.5 * duration, half)]
             }
             Form::Interrupted { ramp } => {
@@ -158,12 +186,12 @@ impl<const N: usize> Turn<N> {
             }
         };
         let mut state = Sample {
-            position: point - incoming * reach,
+            position: point - incoming * entry.distance,
             velocity: incoming * speed,
             acceleration: incoming * -acceleration,
             jerk: none,
         };
-        let end = point + outgoing * reach;
+        let end = point + outgoing * exit.distance;
         let whole = part == Part::Whole;
         if whole && form == Form::Uninterrupted {
             state.jerk = phases[0].1;
@@ -220,29 +248,32 @@ impl<const N: usize> CornerMotion for Turn<N> {
     }
 
     fn entry(&self) -> Boundary {
-        Boundary {
-            distance: self.shape.reach,
-            speed: self.shape.speed,
-            acceleration: self.shape.acceleration,
-        }
+        self.shape.entry
     }
 
     fn exit(&self) -> Boundary {
-        self.entry()
+        self.shape.exit
     }
 
     fn corner_error(&self) -> f64 {
         let TurnShape {
-            speed,
-            acceleration,
-            reach,
+            entry,
+            exit,
             duration,
             form,
         } = self.shape;
+        let Boundary {
+            speed,
+            acceleration,
+            ..
+        } = entry;
         let half_sine = self.corner.half_turn_sine();
         match form {
             Form::Through => 0.0,
-            Form::Uninterrupted => 0.25 * reach * half_sine,
+            Form::Uninterrupted => {
+                let roots = entry.distance.cbrt() + exit.distance.cbrt();
+                2.0 * half_sine * entry.distance * exit.distance / roots.powi(3)
+            }
             Form::Interrupted { ramp } => {
                 // Half-way the S-curve has covered this much less than the straight line would have.
                 let hold = (duration - 2.0 * ramp).max(0.0);

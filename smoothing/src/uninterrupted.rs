@@ -2,12 +2,13 @@
 //! jerk.
 //!
 //! Source: sections 2.2.3 and 3.2, equations 2.34 to 2.44 and 3.5 to 3.9, in vector form: the motion
-//! is a cubic Bezier curve whose two inner control points are the corner. Not here: unequal speeds.
+//! is a cubic Bezier curve whose two inner control points are the corner. Not here: how corners share a
+//! short move.
 
 use crate::turn::{Form, Turn, TurnShape};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
-use toolglide_kinematics::{Corner, Limits, largest_multiple};
-use toolglide_profiles::{BlendError, Blender, Rise};
+use toolglide_kinematics::{Corner, Limits, Tangential, largest_multiple};
+use toolglide_profiles::{BlendError, Blender, Boundary, Rise};
 
 /// Turns a corner with one phase of constant jerk, losing speed into it and regaining it after.
 ///
@@ -32,13 +33,24 @@ use toolglide_profiles::{BlendError, Blender, Rise};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uninterrupted<const N: usize> {
     limits: Limits<N>,
+    ratio: f64,
 }
 
 impl<const N: usize> Uninterrupted<N> {
-    /// Corners within these limits.
+    /// Corners within these limits, left at the speed at which they are entered.
     #[must_use]
     pub fn new(limits: Limits<N>) -> Self {
-        Self { limits }
+        Self::unequal(limits, 1.0)
+    }
+
+    /// Corners that are left at `ratio` (positive) times the speed at which they are entered: where the
+    /// moves beside them differ in length or feedrate.
+    #[must_use]
+    pub fn unequal(limits: Limits<N>, ratio: f64) -> Self {
+        Self {
+            limits,
+            ratio: ratio.max(f64::MIN_POSITIVE),
+        }
     }
 }
 
@@ -60,93 +72,123 @@ impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
         } = corner;
         let error = corner.tolerance.length();
         let limits = &self.limits;
-        let acceleration = largest_multiple(incoming, limits.acceleration())
-            .min(largest_multiple(outgoing, limits.acceleration()));
-        let jerk = largest_multiple(&(incoming + outgoing), limits.jerk());
-        let by_acceleration = (6.0 * acceleration * error / half_sine).sqrt(); // 2.43
-        let by_jerk = (72.0 * jerk * error * error / (half_sine * half_sine)).cbrt(); // 2.42
+        let family = Family {
+            ratio: self.ratio,
+            // Corner error by speed and duration: 2 s2 Ls Le / (cbrt Ls + cbrt Le)^3.
+            error_per_reach: 2.0 / 3.0 * half_sine * self.ratio / (1.0 + self.ratio.cbrt()).powi(3),
+            error,
+            acceleration: largest_multiple(incoming, limits.acceleration())
+                .min(largest_multiple(outgoing, limits.acceleration()) / self.ratio),
+            jerk: largest_multiple(&(incoming + outgoing * self.ratio), limits.jerk()),
+            before: limits.along(incoming),
+            after: limits.along(outgoing),
+            speed_in: corner.speed_in,
+            speed_out: corner.speed_out,
+        };
+        Ok(Turn::new(family.fastest(), *corner))
+    }
+}
+
+/// The corners of one geometry, a family in the speed at the entry and the acceleration there.
+struct Family {
+    ratio: f64,
+    error_per_reach: f64,
+    error: f64,
+    /// Largest acceleration at the entry.
+    acceleration: f64,
+    /// Largest factor of the jerk vector `incoming + ratio * outgoing`.
+    jerk: f64,
+    before: Tangential,
+    after: Tangential,
+    speed_in: f64,
+    speed_out: f64,
+}
+
+impl Family {
+    /// The fastest of the family, from which the acceleration can run out below the feedrate on both
+    /// sides; the printed method forgets the latter.
+    fn fastest(&self) -> TurnShape {
+        let by_acceleration = // 2.43
+            (0.5 * self.acceleration * self.error / self.error_per_reach).sqrt();
+        let by_jerk = // 2.42
+            (0.5 * self.jerk * (self.error / self.error_per_reach).powi(2)).cbrt();
         let speed = by_acceleration.min(by_jerk);
-        let within = Neighbours {
-            feedrate: corner.speed_in.min(corner.speed_out),
-            jerk: largest_multiple(incoming, limits.jerk())
-                .min(largest_multiple(outgoing, limits.jerk())),
+        let for_error = |speed: f64| 2.0 * speed * speed * self.error_per_reach / self.error;
+        let full = self.shape(speed, for_error(speed));
+        if self.runs_out(&full) {
+            return full;
+        }
+        // Slower at the same corner error, or within less of it in less time.
+        let most = |speed: f64| (2.0 * self.jerk * speed).sqrt().min(self.acceleration);
+        let wide = self.slowed(speed, for_error);
+        let tight = self.slowed(speed, most);
+        if self.loss(&tight) < self.loss(&wide) {
+            tight
+        } else {
+            wide
+        }
+    }
+
+    fn shape(&self, speed: f64, acceleration: f64) -> TurnShape {
+        let duration = 2.0 * speed / acceleration;
+        let entry = Boundary {
+            distance: speed * duration / 3.0,
+            speed,
             acceleration,
         };
-        let for_error = |speed: f64| speed * speed * half_sine / (6.0 * error);
-        let shape = if within.fits(speed, for_error(speed)) {
-            shape_of(speed, for_error(speed))
-        } else {
-            // Slower at the same corner error, or within less of it in less time.
-            let most = |speed: f64| (2.0 * jerk * speed).sqrt().min(acceleration);
-            let wide = shape_of_fitting(&within, speed, for_error);
-            let tight = shape_of_fitting(&within, speed, most);
-            if within.loss(&tight) < within.loss(&wide) {
-                tight
-            } else {
-                wide
-            }
-        };
-        Ok(Turn::new(shape, *corner))
-    }
-}
-
-fn shape_of(speed: f64, acceleration: f64) -> TurnShape {
-    let duration = 2.0 * speed / acceleration;
-    TurnShape {
-        speed,
-        acceleration,
-        reach: speed * duration / 3.0,
-        duration,
-        form: Form::Uninterrupted,
-    }
-}
-
-fn shape_of_fitting(
-    within: &Neighbours,
-    most: f64,
-    acceleration_at: impl Fn(f64) -> f64,
-) -> TurnShape {
-    let speed = within.speed(most, &acceleration_at);
-    shape_of(speed, acceleration_at(speed))
-}
-
-/// What the straight moves beside the corner allow.
-struct Neighbours {
-    feedrate: f64,
-    jerk: f64,
-    acceleration: f64,
-}
-
-impl Neighbours {
-    fn fits(&self, speed: f64, acceleration: f64) -> bool {
-        Rise::least_peak(speed, acceleration, self.jerk) <= self.feedrate
+        TurnShape {
+            entry,
+            exit: Boundary {
+                distance: self.ratio * entry.distance,
+                speed: self.ratio * speed,
+                acceleration: self.ratio * acceleration,
+            },
+            duration,
+            form: Form::Uninterrupted,
+        }
     }
 
-    /// The largest speed up to `most` from which the acceleration can run out below the feedrate.
-    ///
-    /// The printed method forgets this; the peak grows with the speed, so the bound is searched.
-    fn speed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> f64 {
-        let (mut low, mut high) = (0.0, most.min(self.feedrate));
+    /// The largest speed up to `most` from which the acceleration can run out below the feedrate; the
+    /// peak grows with the speed, so the bound is searched.
+    fn slowed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> TurnShape {
+        let (mut low, mut high) = (
+            0.0,
+            most.min(self.speed_in).min(self.speed_out / self.ratio),
+        );
+        let shape = |speed: f64| self.shape(speed, acceleration_at(speed));
         while high - low > SEARCH_PRECISION * high {
             let middle = 0.5 * (low + high);
-            if self.fits(middle, acceleration_at(middle)) {
+            if self.runs_out(&shape(middle)) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        low
+        shape(low)
+    }
+
+    fn runs_out(&self, shape: &TurnShape) -> bool {
+        let peak = |boundary: &Boundary, jerk| {
+            Rise::least_peak(boundary.speed, boundary.acceleration, jerk)
+        };
+        peak(&shape.entry, self.before.jerk) <= self.speed_in
+            && peak(&shape.exit, self.after.jerk) <= self.speed_out
     }
 
     /// Time lost against passing at the feedrate.
     fn loss(&self, shape: &TurnShape) -> f64 {
-        let rise = Rise::to_peak(
-            shape.speed,
-            shape.acceleration,
-            self.feedrate,
-            self.acceleration,
-            self.jerk,
-        );
-        shape.duration + 2.0 * (rise.duration() - (rise.distance + shape.reach) / self.feedrate)
+        let beside = |boundary: &Boundary, limits: &Tangential, feedrate: f64| {
+            let rise = Rise::to_peak(
+                boundary.speed,
+                boundary.acceleration,
+                feedrate,
+                limits.acceleration,
+                limits.jerk,
+            );
+            rise.duration() - (rise.distance + boundary.distance) / feedrate
+        };
+        shape.duration
+            + beside(&shape.entry, &self.before, self.speed_in)
+            + beside(&shape.exit, &self.after, self.speed_out)
     }
 }

@@ -12,7 +12,7 @@ use crate::turn::TurnShape;
 use std::collections::VecDeque;
 use toolglide_kinematics::Tangential;
 use toolglide_kinematics::numeric::{CLOSURE, SEARCH_PRECISION};
-use toolglide_profiles::{Connection, Rise};
+use toolglide_profiles::{Boundary, Connection, Rise};
 
 /// A straight move as the window sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,9 +102,9 @@ impl Window {
             witness: 0.0,
         };
         if let (Some(before), Some(last)) = (self.links.back(), self.nodes.back_mut()) {
-            node.cap = feed_cap(&shape, before).min(feed_cap(&shape, &link));
+            node.cap = feed_cap(&shape.entry, before).min(feed_cap(&shape.exit, &link));
             if self.balanced
-                && let Some((left, right)) = balance(&last.shape, &shape, before)
+                && let Some((left, right)) = balance(&last.shape.exit, &shape.entry, before)
             {
                 last.cap = last.cap.min(left);
                 node.cap = node.cap.min(right);
@@ -201,13 +201,13 @@ impl Window {
 
 /// Speed that is reached when the acceleration at the boundary of a turn runs out on `link`.
 #[inline]
-fn peak(shape: &TurnShape, link: &Link) -> f64 {
-    Rise::least_peak(shape.speed, shape.acceleration, link.limits.jerk)
+fn peak(boundary: &Boundary, link: &Link) -> f64 {
+    Rise::least_peak(boundary.speed, boundary.acceleration, link.limits.jerk)
 }
 
 /// Largest scale whose peak stays below the feedrate.
-fn feed_cap(shape: &TurnShape, link: &Link) -> f64 {
-    let peak = peak(shape, link);
+fn feed_cap(boundary: &Boundary, link: &Link) -> f64 {
+    let peak = peak(boundary, link);
     if peak > link.limits.velocity {
         (link.limits.velocity / peak).sqrt()
     } else {
@@ -216,20 +216,19 @@ fn feed_cap(shape: &TurnShape, link: &Link) -> f64 {
 }
 
 /// Length that a turn and the running out of its acceleration need on one side.
-fn footprint(shape: &TurnShape, jerk: f64) -> f64 {
-    let TurnShape {
+fn footprint(boundary: &Boundary, jerk: f64) -> f64 {
+    let Boundary {
+        distance,
         speed,
         acceleration,
-        reach,
-        ..
-    } = *shape;
+    } = *boundary;
     let time = acceleration / jerk;
-    time * (speed + time * acceleration / 3.0) + reach
+    time * (speed + time * acceleration / 3.0) + distance
 }
 
 /// Scales of two turns with equal peaks that together just fill the move between them; `None` where
 /// one is a stop.
-fn balance(left: &TurnShape, right: &TurnShape, link: &Link) -> Option<(f64, f64)> {
+fn balance(left: &Boundary, right: &Boundary, link: &Link) -> Option<(f64, f64)> {
     let (left_peak, right_peak) = (peak(left, link), peak(right, link));
     if left_peak <= 0.0 || right_peak <= 0.0 {
         return None;
@@ -255,13 +254,14 @@ fn room(
     right_scale: f64,
     link: &Link,
 ) -> f64 {
-    let (left, right) = (left.scaled(left_scale), right.scaled(right_scale));
+    let left = left.scaled(left_scale).exit;
+    let right = right.scaled(right_scale).entry;
     let connection = Connection {
         from: [left.speed, left.acceleration],
         to: [right.speed, right.acceleration],
         limits: link.limits,
     };
-    link.length * (1.0 - CLOSURE) - (connection.least_distance() + left.reach + right.reach)
+    link.length * (1.0 - CLOSURE) - (connection.least_distance() + left.distance + right.distance)
 }
 
 /// Largest scale of `node` known to fit `link` together with some reachable scale of `next`, and that
@@ -271,7 +271,7 @@ fn reachable(node: &Node, next: &Node, link: &Link) -> (f64, f64) {
         return (0.0, 0.0);
     }
     let ratio = {
-        let (own, other) = (peak(&node.shape, link), peak(&next.shape, link));
+        let (own, other) = (peak(&node.shape.exit, link), peak(&next.shape.entry, link));
         if other > 0.0 {
             (own / other).sqrt()
         } else {
@@ -324,9 +324,11 @@ fn furthest(from: &Node, next: &Node, link: &Link) -> f64 {
         return next.upper;
     }
     let witness = (from.witness).min(next.upper);
-    let other = peak(&next.shape, link);
+    let other = peak(&next.shape.entry, link);
     let equal = if other > 0.0 {
-        (peak(&from.shape, link) / other).sqrt().min(next.upper)
+        (peak(&from.shape.exit, link) / other)
+            .sqrt()
+            .min(next.upper)
     } else {
         0.0
     };

@@ -8,11 +8,11 @@
 
 use super::quintic::{Offset, PARTS, Quintic};
 use crate::STRAIGHT;
-use crate::turn::TurnShape;
+use crate::turn::{Form, TurnShape};
 use toolglide_kinematics::{
     Corner, Limits, Piece, Sample, Serves, Tangential, Vector, largest_multiple,
 };
-use toolglide_profiles::Connection;
+use toolglide_profiles::{Boundary, Connection};
 
 /// Pieces of one corner: its parts, and one on each straight side.
 pub(super) const PIECES: usize = PARTS + 2;
@@ -116,11 +116,12 @@ impl Bend {
     /// faster.
     pub(super) fn turn(&self, speed: f64, legs: [&Tangential; 2]) -> TurnShape {
         if self.is_faster_than_a_stop(speed, legs) {
-            TurnShape {
+            let boundary = Boundary {
+                distance: self.reach,
                 speed,
-                reach: self.reach,
-                ..TurnShape::STOP
-            }
+                acceleration: 0.0,
+            };
+            TurnShape::symmetric(boundary, 0.0, Form::Through)
         } else {
             TurnShape::STOP
         }

@@ -139,11 +139,8 @@ impl<const N: usize> Course<N> {
             limits: leg.limits,
         };
         if self.begun {
-            let through = TurnShape {
-                speed: self.corner.speed,
-                ..TurnShape::STOP
-            };
-            self.window.push(through, link);
+            self.window
+                .push(TurnShape::through(self.corner.speed), link);
         } else {
             self.window.begin(link);
             self.begun = true;
@@ -154,7 +151,7 @@ impl<const N: usize> Course<N> {
 
     fn decide(&mut self) {
         while let Some(turn) = self.window.pull() {
-            self.speeds.push_back(turn.speed);
+            self.speeds.push_back(turn.entry.speed);
         }
     }
 
@@ -179,7 +176,9 @@ impl<const N: usize> Course<N> {
                 first: leg.serves.first,
                 last: next.serves.last,
             };
-            bend.unroll(&corner, to.speed, serves, |piece| pieces.push_back(piece));
+            bend.unroll(&corner, to.entry.speed, serves, |piece| {
+                pieces.push_back(piece)
+            });
         }
         self.from = to;
     }

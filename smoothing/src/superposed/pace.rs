@@ -184,7 +184,7 @@ impl Pace {
     fn walk(&self, step: f64, mut take: impl FnMut(f64, f64, usize) -> bool) -> bool {
         let (mut begin, mut time, mut tick, mut from) = (0.0, 0.0, 0.0, 0.0);
         for (index, link) in self.links.iter().enumerate() {
-            let to = self.turns.get(index).map_or(0.0, |turn| turn.speed);
+            let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
             let connection = Connection {
                 from: [from, 0.0],
                 to: [to, 0.0],
@@ -293,11 +293,7 @@ impl Pace {
                     .limits
                     .velocity
                     .min(self.places[first - 1].limits.velocity);
-                let through = TurnShape {
-                    speed,
-                    ..TurnShape::STOP
-                };
-                self.window.push(through, link);
+                self.window.push(TurnShape::through(speed), link);
             }
             self.links.push(link);
             start = last.end;
