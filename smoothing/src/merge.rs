@@ -54,6 +54,8 @@ struct Carried<const N: usize> {
     serves: Serves,
     /// How far they strayed.
     deviation: f64,
+    /// How far the motion may be from them.
+    tolerance: Tolerance,
     /// Where they ended: the anchor, but for rounding.
     end: Vector<N>,
 }
@@ -84,7 +86,7 @@ impl<const N: usize> Merger<N> {
     /// Takes the next vertex; gives the leg that it completes.
     pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Leg<N>> {
         if self.run.is_empty() && (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
-            self.carry(vertex.serves, vertex.bulge, vertex.point);
+            self.carry(&vertex, vertex.serves, vertex.bulge);
             return None;
         }
         let mut leg = None;
@@ -93,7 +95,7 @@ impl<const N: usize> Merger<N> {
             None => {
                 leg = self.flush();
                 if (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
-                    self.carry(vertex.serves, vertex.bulge, vertex.point);
+                    self.carry(&vertex, vertex.serves, vertex.bulge);
                     return leg;
                 }
                 self.deviation = vertex.bulge;
@@ -114,20 +116,21 @@ impl<const N: usize> Merger<N> {
             last: last.serves.last,
         };
         let mut deviation = self.deviation;
-        if let Some(carried) = self.carried.take() {
-            serves.first = carried.serves.first;
-            deviation = deviation.max(carried.deviation);
-        }
         let (mut feedrate, mut tolerance) = (first.feedrate, first.tolerance);
         for vertex in &self.run {
             feedrate = feedrate.min(vertex.feedrate);
             tolerance = tolerance.min(vertex.tolerance);
         }
+        if let Some(carried) = self.carried.take() {
+            serves.first = carried.serves.first;
+            deviation = deviation.max(carried.deviation);
+            tolerance = tolerance.min(carried.tolerance);
+        }
         self.run.clear();
         self.deviation = 0.0;
         self.fastest = 0.0;
         if length <= SHORTEST_LENGTH {
-            self.carry(serves, deviation, last.point);
+            self.carry(&Vertex { tolerance, ..last }, serves, deviation);
             return None;
         }
         let direction = span / length;
@@ -165,15 +168,18 @@ impl<const N: usize> Merger<N> {
         self.anchor
     }
 
-    fn carry(&mut self, serves: Serves, deviation: f64, end: Vector<N>) {
+    /// Keeps moves that end at `last`, where they began.
+    fn carry(&mut self, last: &Vertex<N>, serves: Serves, deviation: f64) {
         let mut carried = Carried {
             serves,
             deviation,
-            end,
+            tolerance: last.tolerance,
+            end: last.point,
         };
         if let Some(before) = self.carried {
             carried.serves.first = before.serves.first;
             carried.deviation = deviation.max(before.deviation);
+            carried.tolerance = carried.tolerance.min(before.tolerance);
         }
         self.carried = Some(carried);
     }
