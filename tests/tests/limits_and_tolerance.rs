@@ -19,7 +19,7 @@ fn judge_all<const N: usize>(courses: impl Strategy<Value = Course<N>>) {
 }
 
 /// Cases of each kind of course and number of axes.
-const CASES: u32 = 40;
+const CASES: u32 = 100;
 
 /// Every window with every method, which are four or more.
 const PLANS_A_CASE: u32 = 16;
