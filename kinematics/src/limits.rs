@@ -135,6 +135,28 @@ pub struct Tangential {
     pub jerk: f64,
 }
 
+impl Tangential {
+    /// How long it takes to change the speed by `change` (not negative) between zero accelerations.
+    #[must_use]
+    pub fn time_to_change(&self, change: f64) -> f64 {
+        let knee = self.acceleration * self.acceleration / self.jerk;
+        if change > knee {
+            change / self.acceleration + self.acceleration / self.jerk
+        } else {
+            2.0 * (change / self.jerk).sqrt()
+        }
+    }
+
+    /// The speed that can be reached from rest within half of `length`, at most the velocity limit;
+    /// a little more than that where the acceleration limit is reached.
+    #[must_use]
+    pub fn reachable_within(&self, length: f64) -> f64 {
+        self.velocity
+            .min((self.acceleration * length).sqrt())
+            .min((0.25 * self.jerk * length * length).cbrt())
+    }
+}
+
 /// Largest factor by which `vector` may be multiplied so that no axis exceeds its bound; infinite
 /// for the zero vector.
 #[must_use]

@@ -55,8 +55,8 @@ pub(crate) struct Lattice {
     size: usize,
     wait: usize,
     finished: bool,
-    /// Longest time that stopping takes on any move so far.
-    time_to_stop: f64,
+    /// The last move.
+    last: Option<Link>,
 }
 
 impl Lattice {
@@ -71,7 +71,7 @@ impl Lattice {
             size,
             wait: 0,
             finished: false,
-            time_to_stop: 0.0,
+            last: None,
         };
         lattice.restart();
         lattice
@@ -88,7 +88,7 @@ impl Lattice {
         self.chosen.clear();
         self.wait = PATIENCE.min(self.size);
         self.finished = false;
-        self.time_to_stop = 0.0;
+        self.last = None;
     }
 
     /// Takes a move and the candidates of the corner at its end, first those that can always be followed
@@ -112,10 +112,7 @@ impl Lattice {
         if let Some(last) = self.columns.back() {
             column.reach_from(last, link, overlap);
         }
-        let limits = &link.limits;
-        let time_to_stop =
-            limits.velocity / limits.acceleration + limits.acceleration / limits.jerk;
-        self.time_to_stop = self.time_to_stop.max(time_to_stop);
+        self.last = Some(*link);
         self.columns.push_back(column);
         self.wait = self.wait.saturating_sub(1);
         if self.wait == 0 || self.columns.len() > self.size {
@@ -141,7 +138,9 @@ impl Lattice {
         let Some(last) = self.columns.back_mut() else {
             return;
         };
-        last.give_up(self.time_to_stop);
+        if let Some(link) = &self.last {
+            last.give_up(link);
+        }
         let last = *last;
         let end = self.columns.len() - 1;
         // Walk all survivors back at once until they meet.
@@ -257,10 +256,13 @@ impl Column {
             .unwrap_or_else(|| self.cheapest())
     }
 
-    /// Gives up what lies too far behind the cheapest safe one, given the time to stop: that one could
-    /// have stopped, or stopped and started again.
-    fn give_up(&mut self, time_to_stop: f64) {
-        let least = self.costs[self.cheapest()];
+    /// Gives up what lies too far behind the cheapest safe one, given the time in which that could stop
+    /// on a move like the last: it could have stopped, or stopped and started again.
+    fn give_up(&mut self, link: &Link) {
+        let cheapest = self.cheapest();
+        let least = self.costs[cheapest];
+        let speed = self.shapes[cheapest].exit.speed;
+        let time_to_stop = link.limits.time_to_change(speed);
         for candidate in 0..self.count {
             let times = if self.shapes[candidate].is_stop() {
                 1.0

@@ -281,14 +281,16 @@ impl Ideal {
             .iter()
             .map(|leg| leg.length / leg.limits.velocity)
             .sum();
+        let length: f64 = legs.iter().map(|leg| leg.length).sum();
         let ends = [legs.first(), legs.last()];
+        // Half of a start or a stop is lost against passing at speed.
         let stop = ends
             .iter()
             .flatten()
             .map(|leg| {
-                let limits = &leg.limits;
-                let once = limits.velocity / limits.acceleration;
-                0.5 * (once + (limits.acceleration / limits.jerk).min(once))
+                0.5 * leg
+                    .limits
+                    .time_to_change(leg.limits.reachable_within(length))
             })
             .sum();
         Self { at_feedrate, stop }

@@ -75,9 +75,10 @@ impl<const N: usize> Superposer<N> {
         self.curve.set(legs);
         self.best.controls.clear();
         self.next = 0;
+        let length = self.curve.length();
         let (mut feedrate, mut jerk) = (0.0_f64, f64::INFINITY);
         for leg in legs {
-            feedrate = feedrate.max(leg.limits.velocity);
+            feedrate = feedrate.max(leg.limits.reachable_within(length));
             jerk = jerk.min(leg.limits.jerk);
         }
         let ramp = (feedrate / jerk).sqrt();
