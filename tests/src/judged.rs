@@ -9,7 +9,7 @@ use toolglide_kinematics::{Plan, Trajectory, verify};
 use toolglide_smoothing::{Method, Settings, plan};
 
 /// Windows tried: the shortest, the shortest that looks ahead, a short one, and the default.
-const WINDOWS: [usize; 2] = [5, 512];
+const WINDOWS: [usize; 4] = [1, 2, 5, 512];
 
 /// Plans a course with every method and window and has each judged; gives how many there were.
 ///
