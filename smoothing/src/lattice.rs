@@ -66,7 +66,7 @@ impl Lattice {
         let size = size.max(1);
         let mut lattice = Self {
             columns: VecDeque::with_capacity(size + 2),
-            chosen: VecDeque::with_capacity(burst + size + 2),
+            chosen: VecDeque::with_capacity(burst + 2 * size + 2),
             way: Vec::with_capacity(size + 2),
             size,
             wait: 0,

@@ -6,6 +6,10 @@
 /// the sum of its durations, relative.
 pub const NEVER_SLOWER: f64 = 1e-9;
 
+/// The same for paths with arcs, relative: stopping beside an arc cuts it into chords afresh, and an arc
+/// smaller than the tolerance may be merged whole where it is taken by itself.
+pub const NEVER_SLOWER_WITH_ARCS: f64 = 0.05;
+
 /// Mirrored, permuted and scaled paths take the same time, relative: searches end within
 /// [`SEARCH_PRECISION`](toolglide_kinematics::numeric::SEARCH_PRECISION) of a value that rounding may
 /// bring to either side.
