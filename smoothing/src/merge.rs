@@ -17,8 +17,9 @@ pub(crate) const MERGE_SHARE: f64 = 0.6;
 /// drop moves that are nothing but rounding.
 pub(crate) const ROUNDING_SHARE: f64 = 0.001;
 
-/// Length of moves that may be slowed to the feedrate of the moves that they are merged with, mm.
-const NEGLIGIBLE: f64 = 1e-3;
+/// Length of moves that may be slowed to the feedrate of the moves that they are merged with, as a
+/// share of the tolerance: less than a micrometre where parts are machined.
+const NEGLIGIBLE: f64 = 0.01;
 
 /// Most moves merged into one: bounds memory and the work a move.
 const MOST_MERGED: usize = 160;
@@ -220,7 +221,7 @@ impl<const N: usize> Merger<N> {
         });
         let budget = self.share * tolerance.length();
         let hurried = self.hurried_with(vertex, before);
-        if hurried > budget.min(NEGLIGIBLE) {
+        if hurried > NEGLIGIBLE * tolerance.length() {
             return None;
         }
         let bulge = self
