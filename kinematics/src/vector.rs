@@ -1,7 +1,7 @@
 //! Vectors of one coordinate per axis.
 //!
 //! Source: section 2.3 of the dissertation writes everything per axis; here it is written in vectors.
-//! Not here: rotations and poses, see [`crate::pose`].
+//! Not here: rotations and poses, see [`ToolPose`](crate::ToolPose).
 
 use crate::numeric::SHORTEST_LENGTH;
 
