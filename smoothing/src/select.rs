@@ -79,10 +79,13 @@ impl<const N: usize> Selection<N> {
             Kind::Fastest => {
                 let stop_start = self.stop_start.blend(corner).map(|turn| *turn.shape());
                 let mut fastest = interrupted();
+                // The longer move beside the corner has the higher speed.
                 let unequal = self
                     .unequal
                     .iter()
-                    .map(|blender| blender.blend(corner).map(|turn| *turn.shape()));
+                    .zip(UNEQUAL)
+                    .filter(|(_, ratio)| (after > before) == (*ratio > 1.0))
+                    .map(|(blender, _)| blender.blend(corner).map(|turn| *turn.shape()));
                 for other in [uninterrupted(), stop_start].into_iter().chain(unequal) {
                     fastest = match (fastest, other) {
                         (Ok(one), Ok(other)) => Ok(self.faster(corner, before, after, one, other)),
