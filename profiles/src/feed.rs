@@ -90,23 +90,20 @@ impl Connection {
         }
         let feedrate = feedrate.max(least);
         let slack = CLOSURE * distance;
-        if feedrate.is_finite() {
-            let at_feedrate = self.at_peak(feedrate, distance);
-            if at_feedrate.left >= 0.0 {
-                return Some(at_feedrate);
-            }
-        }
-        let mut low = self.at_peak(least, distance);
-        if low.left < -slack {
-            return None;
-        }
         // The distance is convex in the peak, so that Newton's step from either side lands to the
-        // right of the root; a nudge to the left of the size of its error makes it fit.
-        let mut low_peak = least;
-        let mut high_peak = feedrate;
+        // right of the root; a nudge to the left of the size of its error makes it fit. The ends of the
+        // bracket are tried only when a step leads there.
+        let mut fitting: Option<Solution> = None;
+        let (mut low_peak, mut high_peak) = (least, feedrate);
+        let mut feedrate_tried = false;
         let mut guess = self.first_guess(distance, least, feedrate);
         for _ in 0..MOST_STEPS {
-            if !(guess > low_peak && guess < high_peak) {
+            if guess >= feedrate && !feedrate_tried && feedrate.is_finite() {
+                feedrate_tried = true;
+                guess = feedrate;
+            } else if guess <= least && fitting.is_none() {
+                guess = least;
+            } else if !(guess > low_peak && guess < high_peak) {
                 guess = if high_peak.is_finite() {
                     0.5 * (low_peak + high_peak)
                 } else {
@@ -118,11 +115,13 @@ impl Connection {
             }
             let trial = self.at_peak(guess, distance);
             if trial.left >= 0.0 {
-                low = trial;
+                fitting = Some(trial);
                 low_peak = guess;
-                if trial.left <= precision * distance {
+                if guess >= feedrate || trial.left <= precision * distance {
                     break;
                 }
+            } else if guess <= least {
+                return (trial.left >= -slack).then_some(trial);
             } else {
                 high_peak = guess;
             }
@@ -131,7 +130,11 @@ impl Connection {
             let nudge = (step * step / guess + f64::EPSILON * guess).min(0.25 * step.abs());
             guess += step - nudge;
         }
-        Some(low)
+        // Only a peak a rounding above the least is left.
+        fitting.or_else(|| {
+            let at_least = self.at_peak(least, distance);
+            (at_least.left >= -slack).then_some(at_least)
+        })
     }
 
     /// The peak of the motion that starts and ends at rest with the same middle, which is near.

@@ -34,6 +34,8 @@ use toolglide_profiles::{BlendError, Blender, Boundary, Rise};
 pub struct Uninterrupted<const N: usize> {
     limits: Limits<N>,
     ratio: f64,
+    /// Corner error of a unit reach at the entry, over twice the sine of half the turn angle.
+    unit_error: f64,
 }
 
 impl<const N: usize> Uninterrupted<N> {
@@ -47,9 +49,11 @@ impl<const N: usize> Uninterrupted<N> {
     /// moves beside them differ in length or feedrate.
     #[must_use]
     pub fn unequal(limits: Limits<N>, ratio: f64) -> Self {
+        let ratio = ratio.max(f64::MIN_POSITIVE);
         Self {
             limits,
-            ratio: ratio.max(f64::MIN_POSITIVE),
+            ratio,
+            unit_error: ratio / (1.0 + ratio.cbrt()).powi(3),
         }
     }
 }
@@ -75,7 +79,7 @@ impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
         let family = Family {
             ratio: self.ratio,
             // Corner error by speed and duration: 2 s2 Ls Le / (cbrt Ls + cbrt Le)^3.
-            error_per_reach: 2.0 / 3.0 * half_sine * self.ratio / (1.0 + self.ratio.cbrt()).powi(3),
+            error_per_reach: 2.0 / 3.0 * half_sine * self.unit_error,
             error,
             acceleration: largest_multiple(incoming, limits.acceleration())
                 .min(largest_multiple(outgoing, limits.acceleration()) / self.ratio),
@@ -108,11 +112,14 @@ impl Family {
     /// The fastest of the family, from which the acceleration can run out below the feedrate on both
     /// sides; the printed method forgets the latter.
     fn fastest(&self) -> TurnShape {
-        let by_acceleration = // 2.43
-            (0.5 * self.acceleration * self.error / self.error_per_reach).sqrt();
-        let by_jerk = // 2.42
-            (0.5 * self.jerk * (self.error / self.error_per_reach).powi(2)).cbrt();
-        let speed = by_acceleration.min(by_jerk);
+        let reach = self.error / self.error_per_reach;
+        let by_acceleration = (0.5 * self.acceleration * reach).sqrt(); // 2.43
+        let by_jerk_cubed = 0.5 * self.jerk * reach * reach; // 2.42
+        let speed = if by_jerk_cubed < by_acceleration.powi(3) {
+            by_jerk_cubed.cbrt()
+        } else {
+            by_acceleration
+        };
         let for_error = |speed: f64| 2.0 * speed * speed * self.error_per_reach / self.error;
         let full = self.shape(speed, for_error(speed));
         if self.runs_out(&full) {
