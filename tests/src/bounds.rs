@@ -2,6 +2,8 @@
 //!
 //! Not here: limits and tolerances, which the judge holds the motion to.
 
+use std::time::Duration;
+
 /// A plan that may stop everywhere is never slower than stopping everywhere, but for the rounding of
 /// the sum of its durations, relative.
 pub const NEVER_SLOWER: f64 = 1e-9;
@@ -20,3 +22,7 @@ pub const PRINTED: f64 = 1e-3;
 
 /// Fewest plans that one run of the random paths judges.
 pub const FEWEST_PLANS: u32 = 2_000;
+
+/// Longest planning of a course of some thirty moves: milliseconds are usual, and a search without
+/// bound once took minutes.
+pub const LONGEST_PLANNING: Duration = Duration::from_secs(1);

@@ -252,6 +252,12 @@ impl<const N: usize> Course<N> {
 /// Limits in numbers: velocity, acceleration and jerk of each axis.
 pub type Numbers<const N: usize> = [[f64; 3]; N];
 
+/// Velocity, acceleration and jerk of a slow axis.
+pub const SLOW: [f64; 3] = [10.0, 100.0, 300.0];
+
+/// Velocity, acceleration and jerk of a usual axis.
+pub const USUAL: [f64; 3] = [500.0, 2_000.0, 50_000.0];
+
 /// The limits that the numbers say.
 #[must_use]
 pub fn limits<const N: usize>(numbers: &Numbers<N>) -> Limits<N> {

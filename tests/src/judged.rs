@@ -60,3 +60,13 @@ pub fn judge<const N: usize>(
     }
     Ok(plans)
 }
+
+/// Plans a course with every method and window and has each judged.
+///
+/// # Panics
+/// When the judge finds something, or smoothing is slower than stopping.
+pub fn holds<const N: usize>(course: &Course<N>, numbers: &Numbers<N>) {
+    if let Err(failure) = judge(course, numbers) {
+        panic!("{failure}");
+    }
+}
