@@ -1,0 +1,66 @@
+//! Why a filter chain or a plan of filtered pulses is refused.
+//!
+//! Source: section 4.2. Not here: what is wrong with a path, which `kinematics` says.
+
+use thiserror::Error;
+
+/// Why a filter chain, or a motion through one, is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FirError {
+    /// A quantity must be positive and finite.
+    #[error("{quantity} is {value}, but must be positive and finite")]
+    NotPositive {
+        /// Which quantity.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A chain has at least one filter and at most [`MOST_FILTERS`](crate::MOST_FILTERS).
+    #[error("{given} filters were given, but a chain has {least} to {most}")]
+    FilterCount {
+        /// How many were given.
+        given: usize,
+        /// Fewest that serve.
+        least: usize,
+        /// Most that serve.
+        most: usize,
+    },
+    /// Nothing is left of a filter that is shorter than half a period.
+    #[error(
+        "time constant {time_constant} s is shorter than half the period of {period} s; \
+         shorten the period or drop the filter"
+    )]
+    PeriodTooLong {
+        /// The period, s.
+        period: f64,
+        /// The time constant, s.
+        time_constant: f64,
+    },
+    /// A circle that is smaller than its tolerance has no largest feedrate.
+    #[error("tolerance {tolerance} mm is not below the radius of {radius} mm")]
+    ToleranceAboveRadius {
+        /// The tolerance, mm.
+        tolerance: f64,
+        /// The radius, mm.
+        radius: f64,
+    },
+    /// A mode beyond half the frequency of the set-points cannot be silenced by them.
+    #[error("mode at {frequency} Hz is above {nyquist} Hz, half the frequency of the set-points")]
+    ModeAboveNyquist {
+        /// Frequency of the mode, Hz.
+        frequency: f64,
+        /// Half the frequency of the set-points, Hz.
+        nyquist: f64,
+    },
+    /// A damping ratio lies from 0 to below 1.
+    #[error(
+        "damping ratio of the mode at {frequency} Hz is {damping}, but must be from 0 to below 1"
+    )]
+    Damping {
+        /// Frequency of the mode, Hz.
+        frequency: f64,
+        /// What was given.
+        damping: f64,
+    },
+}
