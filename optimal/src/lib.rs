@@ -1,0 +1,11 @@
+//! Time-optimal motion for whole programs, planned in a streaming window.
+//!
+//! A [`Window`] of consecutive straight pieces with a state at each end is solved for the fastest
+//! motion inside the tolerance and the limits by a [`WindowSolver`]. This crate does not know
+//! machines or programs, and no general convex solver.
+
+mod window;
+
+pub use window::{
+    EndState, Segment, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSolver,
+};
