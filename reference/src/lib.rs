@@ -1,0 +1,29 @@
+//! The time-optimal reference: how far a plan is from the best that physics allows.
+//!
+//! A course of straight legs is followed inside the tolerance and inside the limits of velocity,
+//! acceleration and jerk of every axis, from rest to rest. [`optimum`] finds the fastest such motion, an
+//! upper bound, with a bound from below; [`lower_bound`] holds any motion against what is possible with
+//! its own shares of time. Slow, and for judging plans: controllers have no use for it. This is the
+//! only crate that knows a convex solver.
+
+mod bound;
+mod columns;
+mod course;
+mod durations;
+mod error;
+mod formulation;
+mod grid;
+mod motion;
+mod optimum;
+mod pieces;
+mod rows;
+mod solve;
+mod straight;
+mod switches;
+mod tube;
+
+pub use bound::lower_bound;
+pub use course::{Class, Course};
+pub use error::ReferenceError;
+pub use optimum::{Optimum, Settings, optimum};
+pub use switches::leg_times;

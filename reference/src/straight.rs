@@ -1,0 +1,110 @@
+//! From rest to rest along one straight leg, in closed form.
+//!
+//! Source: the seven-phase law of motion, three cases of equation set 2.2. It starts the search, is
+//! what the convex program is tested against, and what is left when that fails. Not here: corners.
+
+use crate::course::{Course, Leg};
+use toolglide_kinematics::{Limits, Tangential};
+
+/// The phases of a motion from rest to rest: jerk `+ 0 - 0 - 0 +`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Straight {
+    /// Duration of a phase of jerk, s.
+    pub(crate) jerking: f64,
+    /// Duration of a phase of constant acceleration, s.
+    pub(crate) accelerating: f64,
+    /// Duration of the phase of constant speed, s.
+    pub(crate) cruising: f64,
+}
+
+impl Straight {
+    /// The fastest over a length.
+    pub(crate) fn over(length: f64, limits: &Tangential) -> Self {
+        let (v, a, j) = (limits.velocity, limits.acceleration, limits.jerk);
+        let knee = a * a / j;
+        // The speed that is reached when there is no cruising.
+        let by_jerk = (0.25 * j * length * length).cbrt();
+        let reached = if by_jerk <= knee {
+            by_jerk
+        } else {
+            0.5 * (-knee + (knee * knee + 4.0 * a * length).sqrt())
+        };
+        let peak = reached.min(v);
+        let (jerking, accelerating) = if peak > knee {
+            (a / j, peak / a - a / j)
+        } else {
+            ((peak / j).sqrt(), 0.0)
+        };
+        let ramps = peak * (2.0 * jerking + accelerating);
+        Self {
+            jerking,
+            accelerating,
+            cruising: ((length - ramps) / peak).max(0.0),
+        }
+    }
+
+    /// How long it takes, s.
+    pub(crate) fn duration(&self) -> f64 {
+        4.0 * self.jerking + 2.0 * self.accelerating + self.cruising
+    }
+}
+
+/// What a motion along a leg may use of the limits.
+pub(crate) fn along<const N: usize>(limits: &Limits<N>, leg: &Leg<N>) -> Tangential {
+    let mut along = limits.along(&leg.direction);
+    along.velocity = along.velocity.min(leg.feed);
+    along
+}
+
+impl<const N: usize> Course<N> {
+    /// How long each leg takes from rest to rest, s: durations to start a search from.
+    #[must_use]
+    pub fn stopping_times(&self) -> Vec<f64> {
+        self.legs
+            .iter()
+            .map(|leg| Straight::over(leg.length, &along(&self.limits, leg)).duration())
+            .collect()
+    }
+
+    /// How long the length of the course would take if it were straight, s, at the mean of the
+    /// limits along its legs: what no corner costs.
+    #[must_use]
+    pub fn straight_time(&self) -> f64 {
+        let total = self.length();
+        let mut mean = Tangential {
+            velocity: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+        };
+        for leg in &self.legs {
+            let (share, along) = (leg.length / total, along(&self.limits, leg));
+            mean.velocity += share * along.velocity;
+            mean.acceleration += share * along.acceleration;
+            mean.jerk += share * along.jerk;
+        }
+        Straight::over(total, &mean).duration()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_three_cases_have_their_closed_durations() {
+        let limits = Tangential {
+            velocity: 100.0,
+            acceleration: 2500.0,
+            jerk: 2e5,
+        };
+        for (length, duration) in [
+            (10.0, 0.1525),
+            (3.0, 0.082_900_6),
+            (1.0, 0.054_407_6),
+            (0.05, 0.02),
+        ] {
+            let found = Straight::over(length, &limits).duration();
+            assert!((found - duration).abs() < 1e-7, "{length} mm: {found}");
+        }
+    }
+}
