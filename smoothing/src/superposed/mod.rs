@@ -24,14 +24,14 @@ pub(crate) const MOST_LEGS: usize = 4096;
 /// Most time steps of one stretch.
 const MOST_STEPS: usize = 16_384;
 
+/// Fewest time steps of one stretch.
+const FEWEST_STEPS: f64 = 4.0;
+
+/// Share of the feedrate by which a change of speed overshoots it, for a time step as long as the ramp.
+const OVERSHOOT: f64 = 0.015;
+
 /// Rounds of slowing down where a limit or the tolerance is exceeded.
 const ROUNDS: usize = 8;
-
-/// What a place is slowed by in one round beyond what its excess asks for.
-const SLOWER: f64 = 0.995;
-
-/// The most that a place is slowed by in one round.
-const SLOWEST: f64 = 0.85;
 
 /// Filters tried in this order: the time step, as a share of the time in which the jerk changes the
 /// speed by the feedrate, and the sharpening.
@@ -91,7 +91,7 @@ impl<const N: usize> Superposer<N> {
                 step: share * ramp,
                 sharpening,
             };
-            if self.attempt(&filter, shortest) {
+            if self.attempt(&filter, ramp, shortest) {
                 shortest = self.spline.duration();
                 std::mem::swap(&mut self.spline, &mut self.best);
             }
@@ -120,8 +120,10 @@ impl<const N: usize> Superposer<N> {
         self.next = 0;
     }
 
-    fn attempt(&mut self, filter: &Filter, most: f64) -> bool {
-        if !self.pace.survey(&self.curve, &self.limits, filter) {
+    fn attempt(&mut self, filter: &Filter, ramp: f64, most: f64) -> bool {
+        // A change of speed overshoots by about this much when the control points are sharpened.
+        let share = 1.0 - OVERSHOOT * (filter.step / ramp).powi(2);
+        if !self.pace.survey(&self.curve, &self.limits, filter, share) {
             return false;
         }
         for _ in 0..ROUNDS {
@@ -130,13 +132,11 @@ impl<const N: usize> Superposer<N> {
             }
             let mut kept = true;
             for index in 0..self.spline.pieces() {
-                let factor = self.spline.keeps(index, &self.curve, &self.limits);
-                if factor < 1.0 {
+                if let Some(excess) = self.spline.excess(index, &self.curve, &self.limits) {
                     kept = false;
                     let controls = &self.spline.controls[index..index + 4];
-                    let factor = (factor * SLOWER).max(SLOWEST);
                     self.pace
-                        .slow(controls[0].distance, controls[3].distance, factor);
+                        .slow(controls[0].distance, controls[3].distance, &excess);
                 }
             }
             if kept {
@@ -150,6 +150,7 @@ impl<const N: usize> Superposer<N> {
     /// Control points of a motion through the stretch; `false` when it takes too long.
     #[allow(
         clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
         clippy::cast_sign_loss,
         reason = "the count is clamped before it is cast"
     )]
@@ -160,14 +161,21 @@ impl<const N: usize> Superposer<N> {
             spline,
             ..
         } = self;
-        let steps = (most / filter.step).min(MOST_STEPS as f64) as usize;
-        spline.step = filter.step;
-        let controls = &mut spline.controls;
-        controls.clear();
         let legs = curve.legs();
         let (Some(first), Some(last)) = (legs.first(), legs.last()) else {
             return false;
         };
+        let Some(duration) = pace.arrange(filter.step) else {
+            return false;
+        };
+        if duration >= most {
+            return false;
+        }
+        let steps = (duration / filter.step)
+            .round()
+            .clamp(FEWEST_STEPS, MOST_STEPS as f64);
+        spline.step = duration / steps;
+        let steps = steps as usize;
         let begin = Control {
             point: first.start,
             distance: 0.0,
@@ -178,32 +186,54 @@ impl<const N: usize> Superposer<N> {
             distance: curve.length(),
             leg: legs.len() - 1,
         };
-        // Three equal control points are a rest, and sharpening moves the neighbour of a moving one.
-        controls.extend([begin; 3]);
+        let controls = &mut spline.controls;
+        controls.clear();
+        controls.push(begin);
         let mut near = 0;
-        let complete = pace.progress(filter.step, |distance| {
+        let complete = pace.walk(spline.step, |distance, _, _| {
             near = curve.leg_at(distance, near);
             controls.push(Control {
                 point: curve.point(distance, near),
                 distance,
                 leg: near,
             });
-            controls.len() < steps
+            controls.len() <= steps
         });
-        if !complete {
+        if !complete && controls.len() <= steps {
             return false;
         }
-        controls.extend([end; 4]);
-        if filter.sharpening > 0.0 {
-            let share = filter.sharpening / 6.0;
-            let mut before = controls[0].point;
-            for index in 1..controls.len() - 1 {
-                let here = controls[index].point;
-                let second = controls[index + 1].point - here * 2.0 + before;
-                before = here;
-                controls[index].point = here - second * share;
-            }
-        }
+        controls.resize(steps + 3, end);
+        controls[steps + 1] = end;
+        sharpen(controls, curve, filter.sharpening);
+        // Three equal control points are a rest.
+        controls[..3].fill(begin);
+        controls[steps..].fill(end);
         true
+    }
+}
+
+/// Moves the control points so that the spline follows what they sample: along the path by all that
+/// the spline lags behind, across it by a share.
+fn sharpen<const N: usize>(controls: &mut [Control<N>], curve: &Curve<N>, share: f64) {
+    let Some(mut before) = controls.first().copied() else {
+        return;
+    };
+    for index in 1..controls.len() - 1 {
+        let here = controls[index];
+        let after = controls[index + 1];
+        let second = after.point - here.point * 2.0 + before.point;
+        let lag = (after.distance - 2.0 * here.distance + before.distance) / 6.0;
+        before = here;
+        // Rounding may not turn the order around.
+        let distance = (here.distance - lag)
+            .min(curve.length())
+            .max(controls[index - 1].distance);
+        let leg = curve.leg_at(distance, here.leg);
+        let along = curve.legs()[here.leg].direction * lag;
+        controls[index] = Control {
+            point: curve.point(distance, leg) - (second / 6.0 - along) * share,
+            distance,
+            leg,
+        };
     }
 }

@@ -6,11 +6,12 @@
 //! window plans as if the stretch were straight. What comes out is a proposal, judged elsewhere.
 
 use super::curve::Curve;
+use super::spline::Excess;
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, Tangential, Vector, largest_multiple};
-use toolglide_profiles::{Connection, Feed, State};
+use toolglide_profiles::{Connection, Feed, Profile, State};
 
 /// Share of the acceleration that curvature may use.
 const CURVATURE_ACCELERATION: f64 = 0.85;
@@ -32,6 +33,10 @@ const SAME: f64 = 0.99;
 const ROUNDS: usize = 6;
 /// Share of the limits that changes of speed may use at the least.
 const LEAST_REST: f64 = 0.35;
+/// What a place is slowed by in one round beyond what its excess asks for.
+const SLOWER: f64 = 0.995;
+/// The most that a place is slowed by in one round.
+const SLOWEST: f64 = 0.85;
 /// Most instants at which one stretch is looked at.
 const MOST_TICKS: f64 = 20_000.0;
 /// Most places on one stretch.
@@ -51,13 +56,18 @@ pub(super) struct Filter {
 struct Place {
     end: f64,
     limits: Tangential,
-    /// What it must be slowed by next.
+    feedrate: f64,
+    /// What its speed must be slowed by next, and its changes of speed.
     slower: f64,
+    softer: f64,
 }
 
 /// Speeds along a stretch.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
+    /// Share of the feedrate that is used, and what it must be lowered by next.
+    share: f64,
+    lower: f64,
     places: Vec<Place>,
     /// Places at whose beginning the progress is held, without acceleration.
     holds: Vec<usize>,
@@ -70,6 +80,8 @@ pub(super) struct Pace {
 impl Pace {
     pub(super) fn new() -> Self {
         Self {
+            share: 1.0,
+            lower: 1.0,
             places: Vec::with_capacity(MOST_PLACES + 1),
             holds: Vec::with_capacity(MOST_PLACES + 1),
             runs: Vec::with_capacity(MOST_PLACES + 1),
@@ -79,15 +91,19 @@ impl Pace {
         }
     }
 
-    /// Finds what each place of the curve allows; `false` when there are too many.
+    /// Finds what each place of the curve allows at a share of the feedrate; `false` when there are too
+    /// many.
     pub(super) fn survey<const N: usize>(
         &mut self,
         curve: &Curve<N>,
         limits: &Limits<N>,
         filter: &Filter,
+        share: f64,
     ) -> bool {
         self.places.clear();
         self.holds.clear();
+        self.share = share;
+        self.lower = 1.0;
         let mut trial = Trial {
             curve,
             limits,
@@ -96,8 +112,7 @@ impl Pace {
         };
         let mut last_speed = f64::INFINITY;
         for (index, leg) in curve.legs().iter().enumerate() {
-            // A hair below, because the spline is judged at the feedrate itself.
-            let feedrate = leg.limits.velocity * (1.0 - 4.0 * LIMIT_SLACK);
+            let feedrate = leg.limits.velocity * self.share;
             let spacing = 0.5 * feedrate * filter.step;
             let begin = curve.mark(index);
             let pieces = (leg.length / spacing).ceil().max(1.0);
@@ -134,7 +149,9 @@ impl Pace {
                 self.places.push(Place {
                     end,
                     limits,
+                    feedrate: leg.limits.velocity,
                     slower: 1.0,
+                    softer: 1.0,
                 });
             }
         }
@@ -142,7 +159,16 @@ impl Pace {
     }
 
     /// Notes that the places around a distance must be slowed.
-    pub(super) fn slow(&mut self, from: f64, to: f64, factor: f64) {
+    pub(super) fn slow(&mut self, from: f64, to: f64, excess: &Excess) {
+        let more = |factor: f64| (factor * SLOWER).max(SLOWEST);
+        let (slower, softer) = match *excess {
+            Excess::Feedrate(factor) => {
+                self.lower = self.lower.min(factor);
+                return;
+            }
+            Excess::Changes(factor) => (1.0, more(factor)),
+            Excess::Curvature(factor) => (more(factor), more(factor)),
+        };
         let first = self.places.partition_point(|place| place.end < from);
         let mut start = if first > 0 {
             self.places[first - 1].end
@@ -154,43 +180,56 @@ impl Pace {
                 break;
             }
             start = place.end;
-            place.slower = place.slower.min(factor);
+            place.slower = place.slower.min(slower);
+            place.softer = place.softer.min(softer);
         }
     }
 
     /// Slows the places that were noted, each by the most that was asked of it.
     pub(super) fn settle(&mut self) {
+        self.share *= std::mem::replace(&mut self.lower, 1.0) - 4.0 * LIMIT_SLACK;
         for place in &mut self.places {
-            let factor = std::mem::replace(&mut place.slower, 1.0);
-            place.limits.velocity *= factor;
+            place.limits.velocity *= std::mem::replace(&mut place.slower, 1.0);
+            place.limits.velocity = place.limits.velocity.min(self.share * place.feedrate);
+            let factor = std::mem::replace(&mut place.softer, 1.0);
             place.limits.acceleration *= factor * factor;
             place.limits.jerk *= factor * factor * factor;
         }
     }
 
-    /// Plans the progress from rest to rest; gives the distance at each multiple of `step`, until the
-    /// end is reached. `false` when `take` has had enough.
-    pub(super) fn progress(&mut self, step: f64, mut take: impl FnMut(f64) -> bool) -> bool {
+    /// Plans the progress from rest to rest; its duration, or `None` when there is none.
+    pub(super) fn arrange(&mut self, step: f64) -> Option<f64> {
         for _ in 0..ROUNDS {
             self.link();
             if !self.hold_back(step) {
                 break;
             }
         }
-        self.walk(step, |distance, _, _| take(distance))
+        let mut duration = 0.0;
+        let mut from = 0.0;
+        for (index, link) in self.links.iter().enumerate() {
+            let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
+            duration += Self::feed(link, from, to)?.duration();
+            from = to;
+        }
+        Some(duration)
+    }
+
+    fn feed(link: &Link, from: f64, to: f64) -> Option<Feed> {
+        let connection = Connection {
+            from: [from, 0.0],
+            to: [to, 0.0],
+            limits: link.limits,
+        };
+        Feed::over(link.length, &connection).ok()
     }
 
     /// Gives distance, speed and link at each multiple of `step`.
-    fn walk(&self, step: f64, mut take: impl FnMut(f64, f64, usize) -> bool) -> bool {
+    pub(super) fn walk(&self, step: f64, mut take: impl FnMut(f64, f64, usize) -> bool) -> bool {
         let (mut begin, mut time, mut tick, mut from) = (0.0, 0.0, 0.0, 0.0);
         for (index, link) in self.links.iter().enumerate() {
             let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
-            let connection = Connection {
-                from: [from, 0.0],
-                to: [to, 0.0],
-                limits: link.limits,
-            };
-            let Ok(feed) = Feed::over(link.length, &connection) else {
+            let Some(feed) = Self::feed(link, from, to) else {
                 return false;
             };
             let mut state = State::moving(from, 0.0);

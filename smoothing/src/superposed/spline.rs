@@ -21,6 +21,20 @@ pub(super) struct Control<const N: usize> {
     pub(super) leg: usize,
 }
 
+/// Share of the limits that changes of speed use at the least where they are to blame for an excess.
+const ALONG: f64 = 0.6;
+
+/// What a piece exceeds, and how much slower it would have to be, estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Excess {
+    /// The feedrate.
+    Feedrate(f64),
+    /// Acceleration or jerk, because the speed changes.
+    Changes(f64),
+    /// Acceleration, jerk or tolerance, because the curve is travelled too fast.
+    Curvature(f64),
+}
+
 /// A cubic spline over equal time steps.
 #[derive(Clone, Debug)]
 pub(super) struct Spline<const N: usize> {
@@ -60,9 +74,14 @@ impl<const N: usize> Spline<N> {
         [0, 1, 2, 3].map(|offset| &self.controls[index + offset])
     }
 
-    /// How much slower a piece would have to be to keep all limits and the tolerance at every instant
-    /// of it: 1 when it keeps them, else an estimate below 1.
-    pub(super) fn keeps(&self, index: usize, curve: &Curve<N>, limits: &Limits<N>) -> f64 {
+    /// What a piece exceeds of all limits and the tolerance at any instant of it; `None` when it keeps
+    /// them.
+    pub(super) fn excess(
+        &self,
+        index: usize,
+        curve: &Curve<N>,
+        limits: &Limits<N>,
+    ) -> Option<Excess> {
         let step = self.step;
         let [a, b, c, d] = self.four(index);
         let feedrate = curve.legs()[a.leg..=d.leg]
@@ -85,22 +104,37 @@ impl<const N: usize> Spline<N> {
         ]
         .iter()
         .fold(0.0_f64, |most, velocity| most.max(velocity.norm()));
-        let mut kept = (feedrate * slack * step / speed.max(f64::MIN_POSITIVE)).min(1.0);
-        for acceleration in accelerations {
-            kept = kept.min(acceleration.sqrt());
+        let speed = feedrate * slack * step / speed.max(f64::MIN_POSITIVE);
+        let [first, second] = accelerations;
+        let changes = first.min(second).sqrt().min(jerk.cbrt());
+        if changes < 1.0 {
+            let [a, b, c, d] = self.four(index);
+            let progress = [
+                c.distance - 2.0 * b.distance + a.distance,
+                d.distance - 2.0 * c.distance + b.distance,
+                d.distance - 3.0 * c.distance + 3.0 * b.distance - a.distance,
+            ];
+            let limits = &curve.legs()[b.leg].limits;
+            let along = (progress[0].abs().max(progress[1].abs())
+                / (limits.acceleration * step * step))
+                .max(progress[2].abs() / (limits.jerk * step.powi(3)));
+            return Some(if along > ALONG {
+                Excess::Changes(changes)
+            } else {
+                Excess::Curvature(changes)
+            });
         }
-        kept = kept.min(jerk.cbrt());
-        if kept < 1.0 {
-            return kept;
+        if speed < 1.0 {
+            return Some(Excess::Feedrate(speed));
         }
         let mut nearness = 0.0_f64;
         for parts in PARTS {
             nearness = nearness.max(self.nearness(index, curve, parts));
             if nearness >= 1.0 {
-                return 1.0;
+                return None;
             }
         }
-        nearness.sqrt()
+        Some(Excess::Curvature(nearness.sqrt()))
     }
 
     /// The tolerance by the distance between motion and path, bounded on parts of a piece; at least 1
