@@ -6,7 +6,7 @@ use crate::setup::machine;
 use std::fmt::Write as _;
 use std::io::Write;
 use toolglide_kinematics::AxisKind;
-use toolglide_machines::{models, schema};
+use toolglide_machines::{find, models, schema};
 
 /// Runs the command.
 pub(crate) fn machines(args: &MachinesArgs, out: &mut dyn Write) -> Result<(), CliError> {
@@ -65,5 +65,19 @@ fn described(name: &str) -> Result<String, CliError> {
         machine.default_tolerance().length(),
         machine.set_point_period().seconds()
     );
+    let geometry = find(&config.model)?.geometry;
+    if !geometry.is_empty() {
+        text.push_str("\ngeometry       mm\n");
+    }
+    for distance in geometry {
+        let value = config.geometry.get(distance.name).copied();
+        let _ = writeln!(
+            text,
+            "{:<14} {:<10} {}",
+            distance.name,
+            value.or(distance.usual).unwrap_or_default(),
+            distance.meaning
+        );
+    }
     Ok(text)
 }

@@ -9,6 +9,7 @@ pub mod vector;
 pub mod verify;
 
 mod arc;
+mod axis_vector;
 mod corner;
 mod error;
 mod limits;
@@ -23,10 +24,11 @@ mod tolerance;
 mod toolpath;
 
 pub use arc::Arc;
+pub use axis_vector::{AxisVector, MOST_AXES, MOST_SOLUTIONS, Solutions};
 pub use corner::Corner;
 pub use error::{LimitsError, ToolpathError};
 pub use limits::{AxisLimits, Limits, Tangential, largest_multiple};
-pub use machine::{Axis, AxisKind, AxisVector, KinematicsError, MachineKinematics};
+pub use machine::{Axis, AxisKind, KinematicsError, MachineKinematics};
 pub use nalgebra;
 pub use piece::{Piece, Serves};
 pub use plan::{Plan, Sampler, Trajectory};

@@ -3,6 +3,7 @@
 //! Source: section 5.2 for the map; linear machines of chapters 2 to 4 are the identity. Not here:
 //! machines themselves.
 
+use crate::axis_vector::{AxisVector, Solutions};
 use crate::limits::AxisLimits;
 use crate::pose::ToolPose;
 use crate::sample::SamplePeriod;
@@ -18,6 +19,17 @@ pub enum AxisKind {
     Rotary,
 }
 
+impl AxisKind {
+    /// Unit of its positions inside the libraries, "mm" or "rad".
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Linear => "mm",
+            Self::Rotary => "rad",
+        }
+    }
+}
+
 /// One axis of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -31,9 +43,6 @@ pub struct Axis {
     pub travel: Option<(f64, f64)>,
 }
 
-/// A position for each axis of a machine, in machine order.
-pub type AxisVector = nalgebra::DVector<f64>;
-
 /// A machine: its axes, and the map between axis positions and tool pose.
 pub trait MachineKinematics: Send + Sync {
     /// The axes, in machine order.
@@ -45,18 +54,39 @@ pub trait MachineKinematics: Send + Sync {
     /// Period of the set-points where none is asked for.
     fn set_point_period(&self) -> SamplePeriod;
 
-    /// Tool pose at axis positions (one per axis, in machine order).
+    /// Tool pose at axis positions (one per axis, in machine order), whether they are within
+    /// travel or not.
     ///
     /// # Errors
-    /// [`KinematicsError::AxisCount`] when the positions are not one per axis.
+    /// [`KinematicsError::AxisCount`] when the positions are not one per axis,
+    /// [`KinematicsError::NotFinite`] when one of them is no finite number, and
+    /// [`KinematicsError::Reach`] when the structure cannot be put together at these positions.
     fn forward(&self, axes: &AxisVector) -> Result<ToolPose, KinematicsError>;
 
-    /// Of all axis positions that give `pose`, the one nearest to `near`.
+    /// Of all axis positions within travel that give `pose`, those nearest to `near`.
+    ///
+    /// Nearest counts the rotary axes: each is taken on the turn nearest to `near`, and among the
+    /// branches the one with the least sum of squares. Where a rotary axis does not matter, as at
+    /// the pole of a rotary table, it stays as in `near`. So calling this with the positions before
+    /// follows a motion without a jump as long as there is a way. It does not allocate.
     ///
     /// # Errors
-    /// [`KinematicsError::Unreachable`] when the machine cannot take the pose,
-    /// [`KinematicsError::Travel`] when an axis would leave its travel.
+    /// [`KinematicsError::Unreachable`] or [`KinematicsError::Reach`] when the machine cannot take
+    /// the pose, [`KinematicsError::Travel`] when an axis would leave its travel, and what
+    /// [`MachineKinematics::forward`] says of `near`.
     fn inverse(&self, pose: &ToolPose, near: &AxisVector) -> Result<AxisVector, KinematicsError>;
+
+    /// The axis positions of every branch that can take `pose` within travel, the nearest to `near`
+    /// first. It does not allocate.
+    ///
+    /// Each rotary axis is on the turn nearest to `near` within its travel; other turns are for the
+    /// caller to try. A machine with one branch needs not say more than [`MachineKinematics::inverse`].
+    ///
+    /// # Errors
+    /// As [`MachineKinematics::inverse`], when there is no branch.
+    fn solutions(&self, pose: &ToolPose, near: &AxisVector) -> Result<Solutions, KinematicsError> {
+        self.inverse(pose, near).map(Solutions::from)
+    }
 }
 
 /// Why a machine cannot take a pose or a position.
@@ -71,17 +101,47 @@ pub enum KinematicsError {
         /// How many axes there are.
         axes: usize,
     },
+    /// A position must be a finite number.
+    #[error("axis {axis}: position {position} is not a finite number")]
+    NotFinite {
+        /// Letter of the axis.
+        axis: char,
+        /// The position.
+        position: f64,
+    },
     /// The machine has no axes for this pose.
     #[error("the machine cannot take this pose: {reason}")]
     Unreachable {
         /// What is missing.
         reason: &'static str,
     },
+    /// A part of the structure cannot span as much, or as little, as the pose asks of it.
+    #[error(
+        "out of reach: {part} would span {distance} mm, but can span {low} to {high} mm; {} mm too {}",
+        beyond(*distance, *low, *high),
+        if distance > high { "far" } else { "near" }
+    )]
+    Reach {
+        /// Which part.
+        part: &'static str,
+        /// What it would have to span, mm.
+        distance: f64,
+        /// The least that it spans, mm.
+        low: f64,
+        /// The most that it spans, mm.
+        high: f64,
+    },
     /// An axis would leave its travel.
-    #[error("axis {axis}: position {position} is outside the travel {low} to {high}")]
+    #[error(
+        "axis {axis}: position {position} is outside the travel {low} to {high} {} by {}",
+        kind.unit(),
+        beyond(*position, *low, *high)
+    )]
     Travel {
         /// Letter of the axis.
         axis: char,
+        /// What the axis moves in.
+        kind: AxisKind,
         /// Where it would go.
         position: f64,
         /// Lowest position.
@@ -89,4 +149,9 @@ pub enum KinematicsError {
         /// Highest position.
         high: f64,
     },
+}
+
+/// How far a value is outside an interval.
+fn beyond(value: f64, low: f64, high: f64) -> f64 {
+    (low - value).max(value - high)
 }

@@ -14,6 +14,9 @@ pub const LIMIT_SLACK: f64 = 1e-9;
 /// corner.
 pub const LENGTH_SLACK: f64 = 1e-9;
 
+/// Room granted to an angle, rad: rounding of some thousand turns, far below any encoder.
+pub const ANGLE_SLACK: f64 = 1e-9;
+
 /// Two halves of a motion whose relative mismatch is below this meet, dimensionless: a closed form
 /// evaluated and integrated forward agree to about 1e-13.
 pub const CLOSURE: f64 = 1e-11;

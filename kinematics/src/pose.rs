@@ -41,6 +41,15 @@ impl ToolPose {
         Self::new(tip, Vector::<3>::z())
     }
 
+    /// The same orientation with the tip moved by `offset`, mm.
+    #[must_use]
+    pub fn moved_by(&self, offset: Vector<3>) -> Self {
+        Self {
+            tip: self.tip + offset,
+            orientation: self.orientation,
+        }
+    }
+
     /// The tool tip.
     #[must_use]
     pub fn tip(&self) -> Vector<3> {

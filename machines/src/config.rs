@@ -58,6 +58,12 @@ pub struct AxisConfig {
     pub jerk: f64,
     /// Lowest and highest position, mm or degrees; an axis without travel has no ends.
     pub travel: Option<[f64; 2]>,
+    /// Whether the axis counts against the direction that its model draws.
+    #[serde(default)]
+    pub reversed: bool,
+    /// Position of the axis where its model is at 0, mm or degrees.
+    #[serde(default)]
+    pub zero: f64,
 }
 
 fn default_tolerance() -> f64 {
@@ -117,7 +123,16 @@ impl AxisConfig {
             acceleration,
             jerk,
             travel: None,
+            reversed: false,
+            zero: 0.0,
         }
+    }
+
+    /// The same axis with ends, mm or degrees.
+    #[must_use]
+    pub fn with_travel(mut self, low: f64, high: f64) -> Self {
+        self.travel = Some([low, high]);
+        self
     }
 
     /// The axis as one that moves in mm.
@@ -125,7 +140,7 @@ impl AxisConfig {
     /// # Errors
     /// [`MachineError::Field`] names the limit or travel that it must not have.
     pub fn linear(&self) -> Result<Axis, MachineError> {
-        self.checked(AxisKind::Linear, 1.0)
+        self.of_kind(AxisKind::Linear)
     }
 
     /// The axis as one that turns: degrees in the file, rad from here on.
@@ -133,10 +148,15 @@ impl AxisConfig {
     /// # Errors
     /// As [`AxisConfig::linear`].
     pub fn rotary(&self) -> Result<Axis, MachineError> {
-        self.checked(AxisKind::Rotary, 1.0_f64.to_radians())
+        self.of_kind(AxisKind::Rotary)
     }
 
-    fn checked(&self, kind: AxisKind, unit: f64) -> Result<Axis, MachineError> {
+    /// The axis as one of this kind.
+    ///
+    /// # Errors
+    /// As [`AxisConfig::linear`].
+    pub fn of_kind(&self, kind: AxisKind) -> Result<Axis, MachineError> {
+        let unit = file_unit(kind);
         for (quantity, value) in [
             ("velocity", self.velocity),
             ("acceleration", self.acceleration),
@@ -165,6 +185,9 @@ impl AxisConfig {
             }
             None => None,
         };
+        if !self.zero.is_finite() {
+            return Err(self.refuse("zero", self.zero, "finite"));
+        }
         Ok(Axis {
             name: self.name,
             kind,
@@ -180,6 +203,14 @@ impl AxisConfig {
         bound: &'static str,
     ) -> MachineError {
         MachineError::field(format!("axis {}: {quantity}", self.name), value, bound)
+    }
+}
+
+/// The unit of positions in machine files, in mm or rad: degrees for rotary axes.
+pub(crate) fn file_unit(kind: AxisKind) -> f64 {
+    match kind {
+        AxisKind::Linear => 1.0,
+        AxisKind::Rotary => 1.0_f64.to_radians(),
     }
 }
 

@@ -49,6 +49,34 @@ pub enum MachineError {
         /// What it must be.
         bound: &'static str,
     },
+    /// The file lists other axes than the model has, or in another order.
+    #[error(
+        "the axes are {}, but must be {}, in this order",
+        spaced(given),
+        spaced(wanted)
+    )]
+    Axes {
+        /// Letters that the file lists.
+        given: Vec<char>,
+        /// Letters that the model has, in machine order.
+        wanted: Vec<char>,
+    },
+    /// A distance that the model needs is not given.
+    #[error("geometry.{name} is missing: the distance {meaning}, mm")]
+    MissingDistance {
+        /// Name of the distance.
+        name: &'static str,
+        /// What it is.
+        meaning: &'static str,
+    },
+    /// A distance is given that the model does not know.
+    #[error("geometry.{name} is unknown; known: {}", listed(known))]
+    UnknownDistance {
+        /// The name that is given.
+        name: String,
+        /// The names that the model knows.
+        known: Vec<&'static str>,
+    },
     /// Something is wrong in this file.
     #[error("{}: {reason}", file.display())]
     InFile {
@@ -72,4 +100,18 @@ impl MachineError {
             bound,
         }
     }
+}
+
+/// Letters with spaces between them, as in "X Y Z".
+fn spaced(letters: &[char]) -> String {
+    let letters: Vec<String> = letters.iter().map(char::to_string).collect();
+    letters.join(" ")
+}
+
+/// Names with commas between them, or "none".
+fn listed(names: &[&str]) -> String {
+    if names.is_empty() {
+        return "none".to_owned();
+    }
+    names.join(", ")
 }

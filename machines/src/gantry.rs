@@ -6,10 +6,9 @@
 use crate::config::{AxisConfig, MachineConfig};
 use crate::error::MachineError;
 use crate::registry::MachineModel;
-use toolglide_kinematics::numeric::{LENGTH_SLACK, UNIT_LENGTH_ERROR};
-use toolglide_kinematics::{
-    Axis, AxisVector, KinematicsError, MachineKinematics, SamplePeriod, Tolerance, ToolPose, Vector,
-};
+use crate::structure::{Assembly, Branches, Structure, upright};
+use toolglide_kinematics::numeric::LENGTH_SLACK;
+use toolglide_kinematics::{AxisKind, KinematicsError, MachineKinematics, ToolPose, Vector};
 
 /// Largest velocity of an axis of the preset, mm/s.
 const VELOCITY: f64 = 500.0;
@@ -18,67 +17,33 @@ const ACCELERATION: f64 = 2_500.0;
 /// Largest jerk of an axis of the preset, mm/s³.
 const JERK: f64 = 200_000.0;
 
-#[derive(Debug)]
-struct Gantry {
-    axes: Vec<Axis>,
-    tolerance: Tolerance,
-    period: SamplePeriod,
+/// Two or three straight axes.
+#[derive(Clone, Copy, Debug)]
+struct Gantry;
+
+impl Structure<3> for Gantry {
+    fn tool(&self, joints: &[f64; 3]) -> Result<(Vector<3>, Vector<3>), KinematicsError> {
+        Ok(((*joints).into(), Vector::<3>::z()))
+    }
+
+    fn branches(&self, pose: &ToolPose, _near: &[f64; 3]) -> Result<Branches<3>, KinematicsError> {
+        Ok(Branches::one(upright(pose)?.into()))
+    }
 }
 
-impl MachineKinematics for Gantry {
-    fn axes(&self) -> &[Axis] {
-        &self.axes
+impl Structure<2> for Gantry {
+    fn tool(&self, &[x, y]: &[f64; 2]) -> Result<(Vector<3>, Vector<3>), KinematicsError> {
+        Ok((Vector::<3>::new(x, y, 0.0), Vector::<3>::z()))
     }
 
-    fn default_tolerance(&self) -> Tolerance {
-        self.tolerance
-    }
-
-    fn set_point_period(&self) -> SamplePeriod {
-        self.period
-    }
-
-    fn forward(&self, axes: &AxisVector) -> Result<ToolPose, KinematicsError> {
-        if axes.len() != self.axes.len() {
-            return Err(KinematicsError::AxisCount {
-                given: axes.len(),
-                axes: self.axes.len(),
-            });
-        }
-        let tip = Vector::from_fn(|row, _| axes.get(row).copied().unwrap_or(0.0));
-        ToolPose::upright(tip).map_err(|_| KinematicsError::Unreachable {
-            reason: "an axis position is not a finite number",
-        })
-    }
-
-    fn inverse(&self, pose: &ToolPose, _near: &AxisVector) -> Result<AxisVector, KinematicsError> {
-        if (pose.orientation() - Vector::<3>::z()).norm() > UNIT_LENGTH_ERROR {
-            return Err(KinematicsError::Unreachable {
-                reason: "no axis tilts the tool",
-            });
-        }
-        let tip = pose.tip();
-        if self.axes.len() < tip.len() && tip.z.abs() > LENGTH_SLACK {
+    fn branches(&self, pose: &ToolPose, _near: &[f64; 2]) -> Result<Branches<2>, KinematicsError> {
+        let tip = upright(pose)?;
+        if tip.z.abs() > LENGTH_SLACK {
             return Err(KinematicsError::Unreachable {
                 reason: "no axis moves the tool along Z",
             });
         }
-        for (axis, &position) in self.axes.iter().zip(tip.iter()) {
-            if let Some((low, high)) = axis.travel
-                && !(low - LENGTH_SLACK..=high + LENGTH_SLACK).contains(&position)
-            {
-                return Err(KinematicsError::Travel {
-                    axis: axis.name,
-                    position,
-                    low,
-                    high,
-                });
-            }
-        }
-        Ok(AxisVector::from_iterator(
-            self.axes.len(),
-            tip.iter().copied().take(self.axes.len()),
-        ))
+        Ok(Branches::one([tip.x, tip.y]))
     }
 }
 
@@ -93,36 +58,28 @@ fn preset() -> MachineConfig {
 }
 
 fn build(config: &MachineConfig) -> Result<Box<dyn MachineKinematics>, MachineError> {
-    let letters = config.letters();
-    if letters != "XY" && letters != "XYZ" {
-        return Err(MachineError::field(
-            "the list of axes",
-            format!("\"{letters}\""),
-            "X Y or X Y Z, in this order, for a gantry",
-        ));
+    let [] = config.distances(&[])?;
+    // Programs are planned in the coordinates of a gantry, so its axes are those.
+    if let Some(axis) = config.axis.iter().find(|axis| axis.reversed) {
+        let field = format!("axis {}: reversed", axis.name);
+        return Err(MachineError::field(field, true, "false for a gantry"));
     }
-    if let Some((name, value)) = config.geometry.first_key_value() {
-        return Err(MachineError::field(
-            format!("geometry.{name}"),
-            value,
-            "left out: a gantry has no geometry",
-        ));
+    if let Some(axis) = config.axis.iter().find(|axis| axis.zero.abs() > 0.0) {
+        let field = format!("axis {}: zero", axis.name);
+        return Err(MachineError::field(field, axis.zero, "0 for a gantry"));
     }
-    Ok(Box::new(Gantry {
-        axes: config
-            .axis
-            .iter()
-            .map(AxisConfig::linear)
-            .collect::<Result<_, _>>()?,
-        tolerance: config.tolerance()?,
-        period: config.period()?,
-    }))
+    let linear = |letter| (letter, AxisKind::Linear);
+    if config.axis.len() == 2 {
+        return Assembly::build(Gantry, [0.0; 3], ['X', 'Y'].map(linear), config);
+    }
+    Assembly::build(Gantry, [0.0; 3], ['X', 'Y', 'Z'].map(linear), config)
 }
 
 /// Two or three linear axes at right angles.
 pub static GANTRY: MachineModel = MachineModel {
     name: "gantry",
     summary: "two or three linear axes at right angles: X Y or X Y Z",
+    geometry: &[],
     preset,
     build,
 };
@@ -132,6 +89,7 @@ inventory::submit!(GANTRY);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toolglide_kinematics::AxisVector;
 
     fn flat() -> Box<dyn MachineKinematics> {
         let mut config = preset();
@@ -143,7 +101,7 @@ mod tests {
     #[test]
     fn inverse_undoes_forward() {
         let machine = build(&preset()).unwrap();
-        let axes = AxisVector::from_vec(vec![1.5, -2.0, 30.0]);
+        let axes = AxisVector::from([1.5, -2.0, 30.0]);
         let pose = machine.forward(&axes).unwrap();
         assert_eq!(machine.inverse(&pose, &axes).unwrap(), axes);
     }
@@ -169,7 +127,7 @@ mod tests {
         let outside = ToolPose::upright(Vector::<3>::new(400.5, 0.0, 0.0)).unwrap();
         assert_eq!(
             flat().inverse(&outside, &near).unwrap_err().to_string(),
-            "axis X: position 400.5 is outside the travel 0 to 400"
+            "axis X: position 400.5 is outside the travel 0 to 400 mm by 0.5"
         );
         let tilted = ToolPose::new(Vector::zeros(), Vector::<3>::x()).unwrap();
         assert!(flat().inverse(&tilted, &near).is_err(), "tilted");
@@ -188,7 +146,7 @@ mod tests {
                 .err()
                 .unwrap()
                 .to_string()
-                .contains("\"YXZ\""),
+                .contains("the axes are Y X Z, but must be X Y Z"),
             "order"
         );
         let mut config = preset();
@@ -201,6 +159,19 @@ mod tests {
                 .contains("geometry.offset"),
             "geometry"
         );
+        let mut config = preset();
+        config.axis[1].reversed = true;
+        assert!(
+            build(&config)
+                .err()
+                .unwrap()
+                .to_string()
+                .contains("axis Y: reversed"),
+            "sign"
+        );
+        let mut config = preset();
+        config.axis[2].zero = 3.0;
+        assert!(build(&config).is_err(), "zero");
         let mut config = preset();
         config.tolerance_mm = f64::NAN;
         assert!(build(&config).is_err(), "tolerance");

@@ -5,6 +5,7 @@
 
 use crate::config::MachineConfig;
 use crate::error::MachineError;
+use crate::geometry::Distance;
 use toolglide_kinematics::MachineKinematics;
 
 /// A kind of machine, and how to build one.
@@ -14,6 +15,8 @@ pub struct MachineModel {
     pub name: &'static str,
     /// What it is, in one line.
     pub summary: &'static str,
+    /// The distances that it asks for under `[geometry]`.
+    pub geometry: &'static [Distance],
     /// The machine that is meant where only the model is named.
     pub preset: fn() -> MachineConfig,
     /// Builds the machine that a machine file describes.
@@ -102,7 +105,11 @@ mod tests {
     #[test]
     fn the_built_in_machines_are_registered() {
         let names: Vec<_> = models().iter().map(|model| model.name).collect();
-        assert_eq!(names, ["gantry"], "linked and sorted");
+        assert_eq!(
+            names,
+            ["gantry", "table-ac", "table-bc"],
+            "linked and sorted"
+        );
     }
 
     #[test]
@@ -110,7 +117,7 @@ mod tests {
         let refused = find("lathe").unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "machine \"lathe\" is not registered; registered: gantry"
+            "machine \"lathe\" is not registered; registered: gantry, table-ac, table-bc"
         );
     }
 
