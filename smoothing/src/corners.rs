@@ -30,7 +30,7 @@ pub(crate) struct Corners<const N: usize> {
     /// Legs that have not been unrolled; the first `offered` of them are in the lattice.
     legs: VecDeque<Leg<N>>,
     offered: usize,
-    /// Scales of full uninterrupted corners that may overlap.
+    /// Scales of uninterrupted corners that may overlap, see [`overlapping_of`].
     overlapping: &'static [f64],
     limits: Limits<N>,
     /// The leg before the next one to be unrolled.
@@ -219,8 +219,10 @@ impl<const N: usize> Corners<N> {
                 if reach > OVERLAPPING_REACH * leg.length.min(next.length)
                     && let Some(shape) = selection.unscaled(&corner)
                 {
-                    for scale in self.overlapping {
-                        candidates[count] = shape.scaled(*scale);
+                    let reach = shape.entry.distance.max(shape.exit.distance);
+                    let filling = (leg.length.min(next.length) / reach).cbrt();
+                    for share in self.overlapping {
+                        candidates[count] = shape.scaled((share * filling).min(1.0));
                         count += 1;
                     }
                 }
@@ -291,7 +293,7 @@ impl<const N: usize> Corners<N> {
 
 /// Share of the shorter move beside a corner that the full corner must reach over, lest it is not
 /// tried overlapping.
-const OVERLAPPING_REACH: f64 = 0.3;
+const OVERLAPPING_REACH: f64 = 0.0;
 
 /// Shortest window: two corners, so that one can be seen from the other.
 const SHORTEST_WINDOW: usize = 2;
@@ -305,11 +307,12 @@ const AT_REST: Choice = Choice {
     overlap: None,
 };
 
-/// Scales of the full uninterrupted corner that are tried overlapping.
+/// Scales of the uninterrupted corner that are tried overlapping, as shares of the scale at which it
+/// reaches over the whole of the shorter move beside it.
 fn overlapping_of(method: Method) -> &'static [f64] {
     match method {
-        Method::Kcs => &[1.0],
-        Method::KcsGlobal => &[1.0, 0.85, 0.72, 0.61, 0.52, 0.44],
+        Method::Kcs => &[1.3],
+        Method::KcsGlobal => &[1.2, 1.1, 1.0, 0.9, 0.8, 0.7, 0.6],
         _ => &[],
     }
 }

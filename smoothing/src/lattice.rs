@@ -16,7 +16,7 @@ use toolglide_profiles::Connection;
 pub(crate) const MOST_CANDIDATES: usize = 8;
 
 /// Share of a move that two corners must leave free, lest they are tried overlapping.
-const OVERLAPPING: f64 = 0.4;
+const OVERLAPPING: f64 = 2.0;
 
 /// Times to stop by which a way that does not stop may lie behind the cheapest.
 const STOPS_BEHIND: f64 = 4.0;

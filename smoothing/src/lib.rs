@@ -21,6 +21,7 @@ mod stop_start;
 mod stretch;
 mod superposed;
 mod turn;
+mod two_jerks;
 mod uninterrupted;
 mod window;
 

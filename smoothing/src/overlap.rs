@@ -1,50 +1,25 @@
 //! Overlapping corners: from the middle of one uninterrupted corner to the middle of the next.
 //!
-//! Source: section 3.3.2, equations 3.27 to 3.32. For a common duration each axis has one pair of
-//! jerks and one instant between them that join both middles, in closed form; the shortest duration
-//! that keeps every limit and the tolerance replaces the printed choice of equal halves, one of whose
-//! two roots leaves the path. Not here: which corners overlap.
+//! Source: section 3.3.2. Two jerks an axis join both middles, in closed form for a given duration; the
+//! shortest duration found that keeps every limit and the tolerance replaces the printed choice of
+//! equal halves, one of whose two roots leaves the path. Not here: which corners overlap, and the two
+//! jerks.
 
 use crate::leg::Leg;
 use crate::turn::TurnShape;
+use crate::two_jerks::{Marks, Middle, TwoJerks, solve};
 use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK};
 use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector};
 
 /// Durations tried, as shares of the distance over the mean speed.
 const SHORTEST: f64 = 0.6;
 const LONGEST: f64 = 1.8;
-/// Ratio of the durations tried.
-const RATIO: f64 = 1.05;
+/// Durations tried between two at which an axis gains or loses its pair of jerks.
+const CUTS: u32 = 6;
 /// Halvings between the last duration that fails and the first that fits.
 const HALVINGS: usize = 8;
 /// Parts into which a piece is cut where its Bezier points are compared with the leg.
 const PARTS: usize = 4;
-
-/// The state in the middle of a corner.
-#[derive(Clone, Copy, Debug)]
-struct Middle<const N: usize> {
-    position: Vector<N>,
-    velocity: Vector<N>,
-    acceleration: Vector<N>,
-}
-
-impl<const N: usize> Middle<N> {
-    fn of(
-        shape: &TurnShape,
-        point: &Vector<N>,
-        incoming: &Vector<N>,
-        outgoing: &Vector<N>,
-    ) -> Self {
-        Self {
-            position: point
-                + (outgoing * shape.exit.distance - incoming * shape.entry.distance) * 0.125,
-            velocity: (incoming * shape.entry.speed + outgoing * shape.exit.speed) * 0.25,
-            acceleration: (outgoing * shape.exit.acceleration
-                - incoming * shape.entry.acceleration)
-                * 0.5,
-        }
-    }
-}
 
 /// A leg between two corners, with the legs beside it.
 #[derive(Clone, Copy, Debug)]
@@ -52,15 +27,6 @@ pub(crate) struct Between<'a, const N: usize> {
     pub(crate) before: &'a Leg<N>,
     pub(crate) leg: &'a Leg<N>,
     pub(crate) after: &'a Leg<N>,
-}
-
-/// How one axis gets from middle to middle.
-#[derive(Clone, Copy, Debug)]
-struct TwoJerks {
-    /// Instant between the two, as a share of the duration.
-    switch: f64,
-    first: f64,
-    second: f64,
 }
 
 impl<const N: usize> Between<'_, N> {
@@ -82,27 +48,30 @@ impl<const N: usize> Between<'_, N> {
             return None;
         }
         let fits = |duration: f64| self.fits(&start, &end, duration, limits);
-        let mut duration = SHORTEST * typical;
+        let mut marks = Marks::between(SHORTEST * typical, LONGEST * typical);
+        for axis in 0..N {
+            marks.add_axis(&start, &end, axis);
+        }
         let mut failed = 0.0;
-        while !fits(duration) {
-            failed = duration;
-            duration *= RATIO;
-            if duration > LONGEST * typical {
-                return None;
+        for (from, to) in marks.spans() {
+            if fits(from) {
+                return Some(from);
             }
-        }
-        if failed > 0.0 {
-            let mut low = failed;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + duration);
-                if fits(middle) {
-                    duration = middle;
-                } else {
-                    low = middle;
+            // Between two marks an axis has its two jerks everywhere or nowhere.
+            if solve(&start, &end, 0.5 * (from + to)).is_none() {
+                failed = to;
+                continue;
+            }
+            failed = from;
+            for cut in 1..=CUTS {
+                let duration = from + (to - from) * f64::from(cut) / f64::from(CUTS);
+                if fits(duration) {
+                    return Some(least(fits, failed, duration));
                 }
+                failed = duration;
             }
         }
-        Some(duration)
+        (failed > 0.0 && fits(failed)).then_some(failed)
     }
 
     /// The motion from middle to middle over a duration that was found to fit.
@@ -219,54 +188,18 @@ impl<const N: usize> Between<'_, N> {
     }
 }
 
-/// Two jerks for each axis, or `None` where an axis has none over this duration.
-#[allow(
-    clippy::many_single_char_names,
-    reason = "transcribed equations keep the letters of the text"
-)]
-fn solve<const N: usize>(
-    start: &Middle<N>,
-    end: &Middle<N>,
-    duration: f64,
-) -> Option<[TwoJerks; N]> {
-    let t = duration;
-    let mut axes = [TwoJerks {
-        switch: 0.5,
-        first: 0.0,
-        second: 0.0,
-    }; N];
-    for (i, axis) in axes.iter_mut().enumerate() {
-        let (s0, v0, a0) = (start.position[i], start.velocity[i], start.acceleration[i]);
-        let (s1, v1, a1) = (end.position[i], end.velocity[i], end.acceleration[i]);
-        // Mean jerks that the acceleration, the velocity and the position ask for.
-        let al = (a1 - a0) / t;
-        let be = 2.0 * (v1 - v0 - a0 * t) / (t * t);
-        let ga = 6.0 * (s1 - s0 - v0 * t - 0.5 * a0 * t * t) / (t * t * t);
-        let scale = al.abs() + be.abs() + ga.abs();
-        if (al - be).abs() <= CLOSURE * scale {
-            if (be - ga).abs() > CLOSURE * scale {
-                return None;
-            }
-            *axis = TwoJerks {
-                switch: 0.5,
-                first: al,
-                second: al,
-            };
-            continue;
+/// The least duration that fits, between one that does not and one that does.
+fn least(fits: impl Fn(f64) -> bool, failed: f64, fitting: f64) -> f64 {
+    let (mut low, mut high) = (failed, fitting);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if fits(middle) {
+            high = middle;
+        } else {
+            low = middle;
         }
-        let mu = (be - ga) / (al - be);
-        if !(mu > 0.0 && mu < 1.0) {
-            return None;
-        }
-        let d = (al - be) / (mu * (1.0 - mu));
-        let first = al - d * mu;
-        *axis = TwoJerks {
-            switch: 1.0 - mu,
-            first,
-            second: first + d,
-        };
     }
-    Some(axes)
+    high
 }
 
 /// Runs through the parts of constant jerk: state at the start, length, and whether it is the last;
