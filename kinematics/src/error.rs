@@ -72,4 +72,18 @@ pub enum ToolpathError {
         /// Its length.
         length: f64,
     },
+    /// Between opposite orientations every turn is as short.
+    #[error(
+        "orientations lie {angle} rad apart, so that the axis to turn about is open; give a pose between them"
+    )]
+    Opposite {
+        /// The angle between them, rad.
+        angle: f64,
+    },
+    /// An axis to turn about belongs to opposite orientations only.
+    #[error("orientations lie {angle} rad apart, so that the axis to turn about is theirs")]
+    NotOpposite {
+        /// The angle between them, rad.
+        angle: f64,
+    },
 }

@@ -78,3 +78,14 @@ pub const LARGEST_MAGNITUDE: f64 = 1e30;
 /// How many moves ahead the judge of set-points looks at most for a motion that has left its path:
 /// enough for moves of a hundredth of the tolerance, and a millisecond at worst.
 pub const LOOK_AHEAD_MOVES: u32 = 1024;
+
+/// Orientations nearer than this are one, rad: a nanometre at the end of a tool of a metre.
+pub const SAME_ORIENTATION: f64 = 1e-9;
+
+/// Orientations nearer than this to opposite have no axis to turn about, rad: a thousandfold of the
+/// rounding of programs with nine decimals, so that the axis would be noise.
+pub const OPPOSITE_ANGLE: f64 = 1e-6;
+
+/// Room granted to an angle, rad: rounding of a few dozen rotations of a unit vector, and an order
+/// more.
+pub const ANGLE_SLACK: f64 = 1e-12;

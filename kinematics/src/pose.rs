@@ -50,6 +50,14 @@ impl ToolPose {
         }
     }
 
+    /// A pose from finite numbers and an orientation that lacks unit length by rounding only.
+    pub(crate) fn rounded(tip: Vector<3>, orientation: Vector<3>) -> Self {
+        Self {
+            tip,
+            orientation: orientation / orientation.norm(),
+        }
+    }
+
     /// The tool tip.
     #[must_use]
     pub fn tip(&self) -> Vector<3> {

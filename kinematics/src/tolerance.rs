@@ -1,6 +1,7 @@
 //! How far the motion may leave the path, and how fast it may follow it.
 //!
-//! Source: the corner error of sections 2.3 and 3.2. Not here: tolerances of the orientation.
+//! Source: the corner error of sections 2.3 and 3.2. The tolerance of the orientation
+//! is that of section 5.3.
 
 use crate::error::ToolpathError;
 use crate::numeric::LEAST_SHARE;
@@ -79,5 +80,34 @@ impl Feedrate {
     #[must_use]
     pub fn is_rapid(self) -> bool {
         self.0.is_infinite()
+    }
+}
+
+/// Orientation tolerance: every orientation of the tool lies within it of the path on the unit
+/// sphere, and the motion passes within it of every orientation programmed. Positive and below a
+/// half turn, rad.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct OrientationTolerance(f64);
+
+impl OrientationTolerance {
+    /// A tolerance in rad.
+    ///
+    /// # Errors
+    /// [`ToolpathError::NotPositive`] unless it is positive and below a half turn.
+    pub fn new(angle: f64) -> Result<Self, ToolpathError> {
+        if angle > 0.0 && angle < std::f64::consts::PI {
+            Ok(Self(angle))
+        } else {
+            Err(ToolpathError::NotPositive {
+                quantity: "orientation tolerance",
+                value: angle,
+            })
+        }
+    }
+
+    /// The tolerance in rad.
+    #[must_use]
+    pub fn angle(self) -> f64 {
+        self.0
     }
 }

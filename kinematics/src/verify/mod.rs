@@ -23,6 +23,7 @@ mod helix;
 mod judge;
 mod leg;
 mod majorant;
+pub mod pose;
 mod record;
 mod report;
 mod route;

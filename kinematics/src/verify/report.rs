@@ -38,7 +38,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    pub(super) fn raise(&mut self, value: f64, time: f64, place: Place) {
+    pub(crate) fn raise(&mut self, value: f64, time: f64, place: Place) {
         if value > self.value {
             *self = Self { value, time, place };
         }

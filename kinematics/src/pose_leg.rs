@@ -1,0 +1,116 @@
+//! A pose move once its start is known: a line of the tool tip and a turn of the tool, or a straight
+//! move of all axes.
+//!
+//! Source: section 5.2. Not here: words of programs, see [`PoseMove`](crate::PoseMove), and time.
+
+use crate::error::ToolpathError;
+use crate::great_circle::GreatCircle;
+use crate::machine::AxisVector;
+use crate::pose::ToolPose;
+use crate::pose_move::PoseFeed;
+use crate::tolerance::{OrientationTolerance, Tolerance};
+use crate::vector::Vector;
+
+/// The points of a pose leg.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PosePath {
+    /// The tip goes straight and the tool turns about one axis, both in the same shares.
+    Tool {
+        /// Tool tip at the start and at the end.
+        tip: [Vector<3>; 2],
+        /// The turn of the tool.
+        turn: GreatCircle,
+    },
+    /// All axes go straight, in the same shares.
+    Axes {
+        /// Axis positions at the start.
+        start: AxisVector,
+        /// Axis positions at the end.
+        end: AxisVector,
+    },
+    /// Standing still.
+    Dwell {
+        /// For how long, s.
+        duration: f64,
+    },
+}
+
+/// A pose move with its start, its bounds, and the line that it comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseLeg {
+    /// Its points.
+    pub path: PosePath,
+    /// How fast it is followed.
+    pub feed: PoseFeed,
+    /// How far the tool tip may leave it.
+    pub tip_tolerance: Tolerance,
+    /// How far the tool may turn away from it.
+    pub orientation_tolerance: OrientationTolerance,
+    /// Whether the motion must come to rest exactly at its end.
+    pub stop: bool,
+    /// Line of the program, counted from 1; 0 when it comes from none.
+    pub line: u32,
+}
+
+impl PoseLeg {
+    /// A leg from one pose to another that does not stop.
+    ///
+    /// # Errors
+    /// [`ToolpathError::Opposite`] for orientations between which the turn is open.
+    ///
+    /// # Examples
+    /// ```
+    /// use toolglide_kinematics::{
+    ///     Feedrate, OrientationTolerance, PoseFeed, PoseLeg, Tolerance, ToolPose, Vector,
+    /// };
+    /// let start = ToolPose::upright(Vector::zeros())?;
+    /// let end = ToolPose::new(Vector::<3>::new(3.0, 4.0, 0.0), Vector::<3>::new(0.6, 0.0, 0.8))?;
+    /// let leg = PoseLeg::between(
+    ///     &start,
+    ///     &end,
+    ///     PoseFeed::Speed(Feedrate::new(50.0)?),
+    ///     Tolerance::new(0.01)?,
+    ///     OrientationTolerance::new(0.01)?,
+    /// )?;
+    /// assert!((leg.length() - 5.0).abs() < 1e-15);
+    /// # Ok::<(), toolglide_kinematics::ToolpathError>(())
+    /// ```
+    pub fn between(
+        start: &ToolPose,
+        end: &ToolPose,
+        feed: PoseFeed,
+        tip_tolerance: Tolerance,
+        orientation_tolerance: OrientationTolerance,
+    ) -> Result<Self, ToolpathError> {
+        Ok(Self {
+            path: PosePath::Tool {
+                tip: [start.tip(), end.tip()],
+                turn: GreatCircle::between(start, end)?,
+            },
+            feed,
+            tip_tolerance,
+            orientation_tolerance,
+            stop: false,
+            line: 0,
+        })
+    }
+
+    /// Length of the way of the tool tip, mm; 0 for what is no line of the tip.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        match &self.path {
+            PosePath::Tool { tip, .. } => (tip[1] - tip[0]).norm(),
+            _ => 0.0,
+        }
+    }
+
+    /// Angle by which the tool turns, rad; 0 for what is no turn of the tool.
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        match &self.path {
+            PosePath::Tool { turn, .. } => turn.angle(),
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Motions of poses that must pass, and motions that must not.
