@@ -85,7 +85,3 @@ pub const SAME_ORIENTATION: f64 = 1e-9;
 /// Orientations nearer than this to opposite have no axis to turn about, rad: a thousandfold of the
 /// rounding of programs with nine decimals, so that the axis would be noise.
 pub const OPPOSITE_ANGLE: f64 = 1e-6;
-
-/// Room granted to an angle, rad: rounding of a few dozen rotations of a unit vector, and an order
-/// more.
-pub const ANGLE_SLACK: f64 = 1e-12;

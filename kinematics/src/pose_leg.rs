@@ -3,9 +3,9 @@
 //!
 //! Source: section 5.2. Not here: words of programs, see [`PoseMove`](crate::PoseMove), and time.
 
+use crate::axis_vector::AxisVector;
 use crate::error::ToolpathError;
 use crate::great_circle::GreatCircle;
-use crate::machine::AxisVector;
 use crate::pose::ToolPose;
 use crate::pose_move::PoseFeed;
 use crate::tolerance::{OrientationTolerance, Tolerance};

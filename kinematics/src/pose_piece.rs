@@ -4,8 +4,8 @@
 //! the third degree between knots; the orientation is a product of rotations, so that it has unit
 //! length at every instant. Not here: which method made it.
 
+use crate::axis_vector::AxisVector;
 use crate::great_circle::turned;
-use crate::machine::AxisVector;
 use crate::piece::Serves;
 use crate::pose::ToolPose;
 use crate::sample::Sample;

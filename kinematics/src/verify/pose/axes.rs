@@ -3,7 +3,8 @@
 //! Source: interpolation at the nodes of Chebyshev, which is as exact as the last coefficients are
 //! small, and its derivatives. Not here: any formula of a machine but its inverse kinematics.
 
-use crate::machine::{Axis, AxisVector, KinematicsError, MachineKinematics};
+use crate::axis_vector::AxisVector;
+use crate::machine::{Axis, KinematicsError, MachineKinematics};
 use crate::pose_piece::{AxesPiece, CubicInTime, ToolPiece};
 
 /// Nodes of one interpolation.
@@ -47,7 +48,7 @@ impl<'m> Follower<'m> {
         Self {
             machine,
             axes,
-            near: start.clone(),
+            near: *start,
             values: vec![[0.0; NODES]; count],
         }
     }
@@ -77,8 +78,8 @@ impl<'m> Follower<'m> {
     ) -> Result<(), (f64, KinematicsError)> {
         let middle = 0.5 * (begin + end);
         let half = (0.5 * (end - begin)).max(least);
-        let before = self.near.clone();
-        let mut near = before.clone();
+        let before = self.near;
+        let mut near = before;
         for node in 0..NODES {
             // From the start of the stretch to its end.
             let at = middle - half * node_at(node);

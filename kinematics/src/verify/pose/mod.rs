@@ -15,7 +15,8 @@ mod tests;
 pub use report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
 
 use super::report::{Peak, Place};
-use crate::machine::{Axis, AxisVector, MachineKinematics};
+use crate::axis_vector::AxisVector;
+use crate::machine::{Axis, MachineKinematics};
 use crate::numeric::{JUMP_SLACK, LIMIT_SLACK, TIME_SLACK};
 use crate::piece::Serves;
 use crate::pose::ToolPose;
@@ -124,7 +125,7 @@ impl<'m> PoseJudge<'m> {
             PosePiece::Tool(tool) => self.judge_tool(tool, first, last),
             PosePiece::Axes(moved) => {
                 let machine = self.follower.machine;
-                let mut position = moved.end.clone();
+                let mut position = moved.end;
                 let mut pose = |time: f64| {
                     moved.at(time, &mut position);
                     machine.forward(&position).ok()
@@ -378,7 +379,7 @@ impl<'m> PoseJudge<'m> {
         let PosePiece::Axes(moved) = piece else {
             return;
         };
-        let mut position = moved.end.clone();
+        let mut position = moved.end;
         for share in [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0] {
             moved.at(share * moved.duration, &mut position);
             let mut nearest = f64::INFINITY;
@@ -494,6 +495,7 @@ impl<'m> PoseJudge<'m> {
             {
                 let reason = crate::machine::KinematicsError::Travel {
                     axis: axis.name,
+                    kind: axis.kind,
                     position: if peaks.lowest < low {
                         peaks.lowest
                     } else {
@@ -554,7 +556,7 @@ impl<'m> PoseJudge<'m> {
             self.rested = 0.0;
         }
         let rested = self.rested;
-        let near = self.follower.near.clone();
+        let near = self.follower.near;
         let machine = self.follower.machine;
         let pose = match piece {
             PosePiece::Tool(tool) => Some(tool.end),
