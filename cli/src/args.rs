@@ -69,6 +69,15 @@ pub(crate) struct JobArgs {
     pub(crate) json: bool,
 }
 
+/// The filters of the methods fir and fir-p2p.
+#[derive(Debug, Args)]
+pub(crate) struct FilterArgs {
+    /// Time constants of the filters of the methods fir and fir-p2p, s, as in 0.05,0.03 [default:
+    /// those of the machine file, or notches on its modes, or as the limits and feedrates ask].
+    #[arg(long, value_name = "T,T,...", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) fir: Option<PerAxis>,
+}
+
 /// What to plan.
 #[derive(Debug, Args)]
 pub(crate) struct PlanArgs {
@@ -78,6 +87,9 @@ pub(crate) struct PlanArgs {
     /// How corners are taken.
     #[arg(long, default_value = METHODS[0].name, value_parser = methods())]
     pub(crate) method: String,
+    /// The filters.
+    #[command(flatten)]
+    pub(crate) filters: FilterArgs,
     /// Time between two set-points, s [default: that of the machine].
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) period: Option<f64>,
@@ -98,6 +110,9 @@ pub(crate) struct CompareArgs {
     /// Which methods, as in kcs,exact-stop [default: all].
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
     pub(crate) methods: Vec<String>,
+    /// The filters.
+    #[command(flatten)]
+    pub(crate) filters: FilterArgs,
     /// Draw the feedrates of the methods; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,

@@ -6,6 +6,7 @@
 use crate::args::CompareArgs;
 use crate::comparison::{Comparison, MethodRow};
 use crate::error::{CliError, DONE, OUTSIDE};
+use crate::filters;
 use crate::output::OutputFile;
 use crate::pipeline::Lane;
 use crate::plan::{moves, title, warn};
@@ -51,9 +52,11 @@ where
         .map(|path| OutputFile::begin(path, &inputs))
         .transpose()?;
     let chosen = chosen(&args.methods);
+    let chain = filters::chain(&args.filters, setup)?;
     let (start, limits) = (setup.start::<N>(), setup.limits::<N>());
     let lane = |method: &str| {
-        planner(method, start, limits).map(|planner| Lane::new(planner, Judge::new(start, limits)))
+        planner(method, start, limits, chain.as_ref())
+            .map(|planner| Lane::new(planner, Judge::new(start, limits)))
     };
     let mut lanes = chosen
         .iter()

@@ -9,6 +9,7 @@ mod compare;
 mod comparison;
 mod decimals;
 mod error;
+mod filters;
 mod interrupt;
 mod machines;
 mod output;

@@ -5,6 +5,7 @@
 
 use crate::args::{JobArgs, PlanArgs};
 use crate::error::{CliError, DONE, OUTSIDE};
+use crate::filters;
 use crate::output::{OutputFile, same_file};
 use crate::pipeline::{Moves, Outcome, Pipeline};
 use crate::planner::planner;
@@ -111,6 +112,7 @@ where
         let (mut file, drawing) = begin(args, to_stdout)?;
         let start = setup.start::<N>();
         let limits = setup.limits::<N>();
+        let chain = filters::chain(&args.filters, setup)?;
         let destination = match &mut file {
             Some(file) => {
                 let name = file.path().to_owned();
@@ -124,7 +126,7 @@ where
         };
         let outcome = Pipeline {
             moves: moves(&args.job, setup, source),
-            planner: planner(&args.method, start, limits)?,
+            planner: planner(&args.method, start, limits, chain.as_ref())?,
             judge: Judge::new(start, limits),
             set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
             plot: drawing

@@ -3,6 +3,8 @@
 //! Everything else speaks to [`MotionPlanner`].
 
 use crate::error::CliError;
+use crate::filters::refused;
+use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
 use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
 
@@ -42,6 +44,14 @@ pub const METHODS: &[MethodName] = &[
         summary: "spline corners for comparison: curvature-optimal quintics at constant speed",
     },
     MethodName {
+        name: "fir",
+        summary: "feed pulses through moving averages, overlapping as far as the tolerance allows",
+    },
+    MethodName {
+        name: "fir-p2p",
+        summary: "feed pulses through moving averages, a full stop at the end of every move",
+    },
+    MethodName {
         name: EXACT_STOP,
         summary: "a full stop at the end of every move",
     },
@@ -58,10 +68,18 @@ pub(crate) fn planner<const N: usize>(
     method: &str,
     start: Vector<N>,
     limits: Limits<N>,
+    filters: Option<&FilterChain>,
 ) -> Result<Box<dyn MotionPlanner<N>>, CliError> {
     if let Some(method) = Method::find(method) {
         let settings = Settings::new(limits).with_method(method);
         return Ok(Box::new(KinematicSmoothing::new(start, &settings)));
+    }
+    if let Some(method) = toolglide_fir::Method::find(method) {
+        let mut settings = toolglide_fir::Settings::new(limits).with_method(method);
+        if let Some(chain) = filters {
+            settings = settings.with_chain(chain).map_err(refused)?;
+        }
+        return Ok(Box::new(FirInterpolation::new(start, &settings)));
     }
     if method == BEZIER {
         return Ok(Box::new(BezierSmoothing::new(start, limits)));
@@ -83,13 +101,13 @@ mod tests {
         let limits = Limits::<2>::uniform(1.0, 1.0, 1.0).unwrap();
         for method in METHODS {
             assert!(
-                planner(method.name, Vector::zeros(), limits).is_ok(),
+                planner(method.name, Vector::zeros(), limits, None).is_ok(),
                 "{}",
                 method.name
             );
         }
         assert!(
-            planner("spline", Vector::zeros(), limits).is_err(),
+            planner("spline", Vector::zeros(), limits, None).is_err(),
             "unknown"
         );
     }

@@ -8,7 +8,7 @@ use std::path::Path;
 use toolglide_kinematics::{
     Axis, AxisKind, AxisLimits, Limits, MachineKinematics, SamplePeriod, Tolerance, Vector,
 };
-use toolglide_machines::{MachineConfig, find, load};
+use toolglide_machines::{MachineConfig, ModeConfig, find, load};
 
 /// Shortest period that is taken, s: below it a file of set-points has no end worth waiting for.
 const SHORTEST_PERIOD: f64 = 1e-9;
@@ -26,6 +26,10 @@ pub(crate) struct Setup {
     pub(crate) override_tolerance: bool,
     /// Period of the set-points.
     pub(crate) period: SamplePeriod,
+    /// Time constants of filters that the machine file gives; none where it does not.
+    pub(crate) time_constants: Vec<f64>,
+    /// Modes of vibration.
+    pub(crate) modes: Vec<ModeConfig>,
     start: Vec<f64>,
 }
 
@@ -89,7 +93,10 @@ impl Setup {
             })?,
             None => machine.default_tolerance(),
         };
+        let modes = config.modes()?.to_vec();
         Ok(Self {
+            time_constants: config.fir_s,
+            modes,
             machine: config.name,
             axes,
             tolerance,

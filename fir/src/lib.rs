@@ -2,12 +2,27 @@
 //! through moving averages, which round the corners of the path, too, and silence the modes whose
 //! periods they have.
 //!
-//! [`FilterChain`] is a chain of moving averages with its exact responses. This crate does not know
+//! [`FilterChain`] is a chain of moving averages with its exact responses. [`FirInterpolation`] plans
+//! while a path streams in; [`plan`] does so for a whole toolpath. This crate does not know
 //! kinematic corner smoothing, machines or programs.
 
+mod bound;
 mod chain;
+mod chords;
+mod circle;
+mod cubic;
 mod error;
 mod kernel;
+mod lookahead;
+mod mode;
+mod planner;
+mod pulse;
+mod settings;
+mod sweep;
 
 pub use chain::{FilterChain, MOST_FILTERS};
+pub use circle::largest_circle_feed;
 pub use error::FirError;
+pub use mode::Mode;
+pub use planner::{FirInterpolation, plan};
+pub use settings::{Method, Settings};

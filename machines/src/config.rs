@@ -37,8 +37,30 @@ pub struct MachineConfig {
     /// Distances in the structure of the machine that its model asks for, mm.
     #[serde(default)]
     pub geometry: BTreeMap<String, f64>,
+    /// Time constants of the filters of the method fir, s; without them they are chosen.
+    #[serde(default)]
+    pub fir_s: Vec<f64>,
+    /// Modes of vibration, which the filters of the method fir silence where no time constants are
+    /// given.
+    #[serde(default)]
+    pub mode: Vec<ModeConfig>,
     /// The axes, in machine order.
     pub axis: Vec<AxisConfig>,
+}
+
+/// A mode of vibration of the structure.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModeConfig {
+    /// Letter of the axis whose acceleration excites it.
+    pub axis: char,
+    /// Undamped natural frequency, Hz.
+    #[schemars(range(min = 0.0))]
+    pub frequency_hz: f64,
+    /// Damping ratio, from 0 to below 1.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub damping: f64,
 }
 
 /// One axis. Limits and travel are in mm for a linear axis and in degrees for a rotary one.
@@ -84,6 +106,8 @@ impl MachineConfig {
             tolerance_mm: DEFAULT_TOLERANCE,
             period_s: DEFAULT_PERIOD,
             geometry: BTreeMap::new(),
+            fir_s: Vec::new(),
+            mode: Vec::new(),
             axis,
         }
     }
@@ -104,6 +128,39 @@ impl MachineConfig {
     pub fn period(&self) -> Result<SamplePeriod, MachineError> {
         SamplePeriod::new(self.period_s)
             .map_err(|_| MachineError::field("period_s", self.period_s, POSITIVE))
+    }
+
+    /// The modes of vibration, each of an axis that there is.
+    ///
+    /// # Errors
+    /// [`MachineError::Field`] names the mode and what is wrong with it.
+    pub fn modes(&self) -> Result<&[ModeConfig], MachineError> {
+        for mode in &self.mode {
+            let field = |quantity: &str| format!("mode of axis {}: {quantity}", mode.axis);
+            if !self.axis.iter().any(|axis| axis.name == mode.axis) {
+                let letters = self.letters();
+                return Err(MachineError::field(
+                    "mode: axis",
+                    format!("{} of a machine with axes {letters}", mode.axis),
+                    "an axis of the machine",
+                ));
+            }
+            if !(mode.frequency_hz > 0.0 && mode.frequency_hz.is_finite()) {
+                return Err(MachineError::field(
+                    field("frequency_hz"),
+                    mode.frequency_hz,
+                    POSITIVE,
+                ));
+            }
+            if !(0.0..1.0).contains(&mode.damping) {
+                return Err(MachineError::field(
+                    field("damping"),
+                    mode.damping,
+                    "from 0 to below 1",
+                ));
+            }
+        }
+        Ok(&self.mode)
     }
 
     /// Letters of the axes, in machine order, as in "XYZ".
@@ -242,6 +299,32 @@ mod tests {
             assert!(
                 matches!(axis.linear(), Err(MachineError::Field { .. })),
                 "{travel:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_mode_belongs_to_an_axis_and_has_a_frequency_and_a_damping() {
+        let axis = AxisConfig::new('X', 100.0, 1000.0, 1e5);
+        let mut config = MachineConfig::new("gantry", "m", vec![axis]);
+        let mode = |axis, frequency_hz, damping| ModeConfig {
+            axis,
+            frequency_hz,
+            damping,
+        };
+        config.mode = vec![mode('X', 7.4, 0.01)];
+        assert_eq!(config.modes().unwrap().len(), 1, "one mode");
+        for wrong in [
+            mode('Y', 7.4, 0.0),
+            mode('X', 0.0, 0.0),
+            mode('X', f64::NAN, 0.0),
+            mode('X', 7.4, 1.0),
+            mode('X', 7.4, -0.1),
+        ] {
+            config.mode = vec![wrong.clone()];
+            assert!(
+                matches!(config.modes(), Err(MachineError::Field { .. })),
+                "{wrong:?}"
             );
         }
     }

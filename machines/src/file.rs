@@ -126,6 +126,9 @@ mod tests {
             "tolerance_mm",
             "period_s",
             "axis",
+            "mode",
+            "frequency_hz",
+            "fir_s",
             "velocity",
             "travel",
         ] {

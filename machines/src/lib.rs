@@ -15,7 +15,7 @@ mod swivel;
 mod table_ac;
 mod table_bc;
 
-pub use config::{AxisConfig, MachineConfig};
+pub use config::{AxisConfig, MachineConfig, ModeConfig};
 pub use error::MachineError;
 pub use file::{from_toml, load, schema};
 pub use gantry::GANTRY;

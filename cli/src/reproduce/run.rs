@@ -76,7 +76,10 @@ impl Runs {
             travel: Travel::of(&[]),
         };
         let start = Vector::<2>::zeros();
-        let mut lane = Lane::new(planner(method, start, limits)?, Judge::new(start, limits));
+        let mut lane = Lane::new(
+            planner(method, start, limits, None)?,
+            Judge::new(start, limits),
+        );
         let mut batch = Vec::new();
         let mut corner_speed = None;
         loop {

@@ -1,0 +1,59 @@
+//! Which filters a run plans with.
+//!
+//! Source: section 4.2.2. The command line goes before the machine file, time constants before modes;
+//! where none of them says anything, the planner chooses. Not here: the filters.
+
+use crate::args::FilterArgs;
+use crate::error::CliError;
+use crate::setup::Setup;
+use toolglide_fir::{FilterChain, FirError, Mode};
+
+/// The chain of a run; `None` where the planner chooses.
+pub(crate) fn chain(args: &FilterArgs, setup: &Setup) -> Result<Option<FilterChain>, CliError> {
+    let given = args.fir.as_ref().map(|given| given.0.as_slice());
+    let time_constants = given.unwrap_or(&setup.time_constants);
+    if !time_constants.is_empty() {
+        return FilterChain::with_time_constants(time_constants)
+            .and_then(|chain| chain.rounded_to(setup.period))
+            .map(Some)
+            .map_err(refused);
+    }
+    if setup.modes.is_empty() {
+        return Ok(None);
+    }
+    // Axes that vibrate alike need one filter.
+    let mut modes = Vec::<Mode>::new();
+    for mode in &setup.modes {
+        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(refused)?;
+        if !modes.contains(&mode) {
+            modes.push(mode);
+        }
+    }
+    let further = if modes.len() == 1 {
+        further(setup)
+    } else {
+        None
+    };
+    FilterChain::silencing(&modes, further.as_slice(), setup.period)
+        .map(Some)
+        .map_err(refused)
+}
+
+/// Jerk is bounded by a second filter; twice the time that it takes to change the acceleration, because
+/// ramps may coincide.
+fn further(setup: &Setup) -> Option<f64> {
+    setup
+        .axes
+        .iter()
+        .map(|axis| 2.0 * axis.limits.acceleration() / axis.limits.jerk())
+        .reduce(f64::max)
+}
+
+/// A refused filter as the command line says it.
+pub(crate) fn refused(reason: FirError) -> CliError {
+    CliError::Option {
+        option: "--fir",
+        value: "filters".to_owned(),
+        bound: reason.to_string(),
+    }
+}

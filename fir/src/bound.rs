@@ -1,0 +1,192 @@
+//! How far a filtered motion can be from its path, whatever pulses, dwells and corners are in the
+//! window of the filters.
+//!
+//! Source: ours; equations 4.24 to 4.26 know one corner alone and break their own tolerance where
+//! corners are dense. The filtered position is a mean of commanded ones, so it lies near the point
+//! of the path at the mean distance, off by at most each turn `|t2 - t1|` times the smaller of what
+//! is missing before the corner and what is gained behind it. The sum is largest where the mean
+//! distance is that of a corner, and there it bounds the corner error, too. A longer dwell anywhere
+//! never increases it. Not here: what is done about it.
+
+use crate::cubic::CubicChain;
+use crate::pulse::Pulse;
+use toolglide_kinematics::Vector;
+
+/// Most steps in the search of the instant; Newton needs three or four.
+const STEPS: u32 = 40;
+
+/// Precision of that instant as a share of the delay, dimensionless: the bound changes by less.
+const INSTANT_PRECISION: f64 = 1e-7;
+
+/// When each pulse begins and ends, and the bound at each corner.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Schedule {
+    begin: Vec<f64>,
+    end: Vec<f64>,
+    /// Progress of the pulses in the window of the last corner asked for.
+    progress: Vec<f64>,
+    /// What each corner of that window contributes, and the index of the first.
+    contributions: Vec<f64>,
+    first: usize,
+}
+
+impl Schedule {
+    pub(crate) fn with_capacity(capacity: usize) -> Self {
+        let room = || Vec::with_capacity(capacity);
+        Self {
+            begin: room(),
+            end: room(),
+            progress: room(),
+            contributions: room(),
+            first: 0,
+        }
+    }
+
+    pub(crate) fn begin(&self, pulse: usize) -> f64 {
+        self.begin[pulse]
+    }
+
+    pub(crate) fn end(&self, pulse: usize) -> f64 {
+        self.end[pulse]
+    }
+
+    /// The corners that contributed to the bound asked for last, with their shares.
+    pub(crate) fn contributions(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        (self.first..).zip(self.contributions.iter().copied())
+    }
+
+    /// Times the pulses; those before `fixed` keep the gaps that were handed out.
+    ///
+    /// Two pulses whose velocities differ on an axis by more than `change` must not be in the window
+    /// together: the later one waits for the time of the longest filter.
+    pub(crate) fn time<const N: usize>(
+        &mut self,
+        pulses: &[Pulse<N>],
+        fixed: usize,
+        chain: &CubicChain,
+        change: &Vector<N>,
+    ) {
+        self.begin.clear();
+        self.end.clear();
+        let mut clock = 0.0;
+        let mut could_clash = false;
+        for (index, pulse) in pulses.iter().enumerate() {
+            let velocity = pulse.direction * pulse.feed;
+            if index > 0 {
+                clock += if index < fixed {
+                    pulse.gap
+                } else {
+                    chain.total() - pulses[index - 1].overlap
+                };
+            }
+            could_clash =
+                could_clash || (0..N).any(|axis| velocity[axis].abs() > 0.5 * change[axis]);
+            if could_clash && index >= fixed {
+                for earlier in (0..index).rev() {
+                    let free = self.end[earlier] + chain.long();
+                    if free <= clock {
+                        break;
+                    }
+                    let other = &pulses[earlier];
+                    let gap = velocity - other.direction * other.feed;
+                    if (0..N).any(|axis| gap[axis].abs() > change[axis]) {
+                        clock = free;
+                        break;
+                    }
+                }
+            }
+            self.begin.push(clock);
+            clock += pulse.length / pulse.feed;
+            self.end.push(clock);
+        }
+    }
+
+    /// Bound of the distance from the path, at the instant at which the mean distance is that of the
+    /// corner at the end of pulse `corner`.
+    pub(crate) fn at_corner<const N: usize>(
+        &mut self,
+        pulses: &[Pulse<N>],
+        chain: &CubicChain,
+        corner: usize,
+    ) -> f64 {
+        let total = chain.total();
+        let (mut low, mut high) = (self.end[corner], self.begin[corner + 1] + total);
+        let mut time = 0.5 * (low + high);
+        for _ in 0..STEPS {
+            let (mut excess, mut rate) = (0.0, 0.0);
+            for index in (0..=corner).rev() {
+                let after = time - self.end[index];
+                if after >= total {
+                    break;
+                }
+                let since = time - self.begin[index];
+                let feed = pulses[index].feed;
+                excess +=
+                    feed * (chain.position(since) - chain.position(after)) - pulses[index].length;
+                rate += feed * (chain.velocity(since) - chain.velocity(after));
+            }
+            for (index, pulse) in pulses.iter().enumerate().skip(corner + 1) {
+                let since = time - self.begin[index];
+                if since <= 0.0 {
+                    break;
+                }
+                let after = time - self.end[index];
+                let feed = pulse.feed;
+                excess += feed * (chain.position(since) - chain.position(after));
+                rate += feed * (chain.velocity(since) - chain.velocity(after));
+            }
+            if excess > 0.0 {
+                high = time;
+            } else {
+                low = time;
+            }
+            let mut next = time - excess / rate;
+            if !(next >= low && next <= high) {
+                next = 0.5 * (low + high);
+            }
+            let step = (next - time).abs();
+            time = next;
+            if step <= INSTANT_PRECISION * total {
+                break;
+            }
+        }
+        self.sum(pulses, chain, corner, time)
+    }
+
+    fn sum<const N: usize>(
+        &mut self,
+        pulses: &[Pulse<N>],
+        chain: &CubicChain,
+        corner: usize,
+        time: f64,
+    ) -> f64 {
+        let total = chain.total();
+        let mut first = corner;
+        while first > 0 && time - self.end[first - 1] < total {
+            first -= 1;
+        }
+        self.first = first;
+        self.progress.clear();
+        for (index, pulse) in pulses.iter().enumerate().skip(first) {
+            let since = time - self.begin[index];
+            if since <= 0.0 {
+                break;
+            }
+            let after = time - self.end[index];
+            self.progress
+                .push(pulse.feed * (chain.position(since) - chain.position(after)));
+        }
+        let mut gained: f64 = self.progress.iter().sum();
+        let mut missing = 0.0;
+        let mut bound = 0.0;
+        self.contributions.clear();
+        for (pulse, progress) in pulses[first..].iter().zip(&self.progress) {
+            gained -= progress;
+            missing += pulse.length - progress;
+            let contribution = pulse.turn * gained.min(missing).max(0.0);
+            self.contributions.push(contribution);
+            bound += contribution;
+        }
+        bound
+    }
+}

@@ -1,0 +1,446 @@
+//! Decides when pulses begin and how fast they are, so that the motion keeps its tolerance: a dwell at
+//! sharp corners, a lower feedrate where corners are dense.
+//!
+//! Source: section 4.3 for the dwell, whose formula is replaced by one that holds for unequal
+//! feedrates; the bound over the whole window and what is done about it are ours. Not here: the
+//! bound itself.
+
+use crate::bound::Schedule;
+use crate::cubic::CubicChain;
+use crate::pulse::Pulse;
+use crate::sweep::{Command, TimedPulse};
+use toolglide_kinematics::Vector;
+
+/// Pulses that wait before the first half of them is handed out.
+const PENDING: usize = 128;
+
+/// Pulses that may still be in the window of the filters; when there are more, the motion rests.
+const CONTEXT: usize = 384;
+
+/// Turns `|t2 - t1|` above this are never passed by slowing down: 2 sin 15°.
+const SHARP: f64 = 0.517_638_090_205_041_5;
+
+/// Corners that contribute less than this share of the tolerance are left as they are.
+const SHARE_THAT_COUNTS: f64 = 0.02;
+
+/// What is aimed at, as a share of the tolerance, when a bound is broken.
+const AIM: f64 = 0.9995;
+
+/// Rounds of corrections; after that dwells are lengthened only, which always succeeds.
+const ROUNDS: u32 = 40;
+
+/// Rounds after which a dwell that still does not suffice becomes a full stop.
+const ROUNDS_TO_STOP: u32 = 56;
+
+/// Steps in the search of a passing feedrate: each halves what is left of its error.
+const PASSING_STEPS: u32 = 8;
+
+/// A passing feedrate is close enough when its bound is within this share below the tolerance.
+const PASSING_PRECISION: f64 = 0.005;
+
+/// Where pulses wait for their times.
+#[derive(Clone, Debug)]
+pub(crate) struct LookAhead<const N: usize> {
+    chain: CubicChain,
+    /// Largest change of velocity of each axis within the window.
+    change: Vector<N>,
+    pulses: Vec<Pulse<N>>,
+    /// How many of them were handed out.
+    fixed: usize,
+    schedule: Schedule,
+    dirty: Vec<bool>,
+    slower: Vec<f64>,
+    longer: Vec<f64>,
+}
+
+impl<const N: usize> LookAhead<N> {
+    pub(crate) fn new(chain: CubicChain, change: Vector<N>) -> Self {
+        let capacity = 4 * (PENDING + CONTEXT);
+        Self {
+            chain,
+            change,
+            pulses: Vec::with_capacity(capacity),
+            fixed: 0,
+            schedule: Schedule::with_capacity(capacity),
+            dirty: Vec::with_capacity(capacity),
+            slower: Vec::with_capacity(capacity),
+            longer: Vec::with_capacity(capacity),
+        }
+    }
+
+    /// Other filters from here on; only when nothing waits.
+    pub(crate) fn set_chain(&mut self, chain: CubicChain, change: Vector<N>) {
+        debug_assert!(self.pulses.is_empty(), "filters change only at rest");
+        self.chain = chain;
+        self.change = change;
+    }
+
+    /// Takes the next pulse; what is decided goes to `out`.
+    pub(crate) fn push(&mut self, pulse: Pulse<N>, out: &mut impl FnMut(Command<N>)) {
+        if let Some(before) = self.pulses.last_mut() {
+            before.turn = (pulse.direction - before.direction).norm();
+        }
+        self.pulses.push(pulse);
+        if self.pulses.len() - self.fixed >= PENDING {
+            self.solve();
+            let half = self.fixed + PENDING / 2;
+            self.hand_out(half, out);
+            if self.fixed > CONTEXT {
+                self.rest(out);
+            }
+        }
+    }
+
+    /// Decides all that waits; the motion comes to rest.
+    pub(crate) fn rest(&mut self, out: &mut impl FnMut(Command<N>)) {
+        if self.pulses.is_empty() {
+            return;
+        }
+        if self.pulses.len() > self.fixed {
+            self.solve();
+            self.hand_out(self.pulses.len(), out);
+        }
+        self.pulses.clear();
+        self.fixed = 0;
+        out(Command::Rest);
+    }
+
+    fn hand_out(&mut self, until: usize, out: &mut impl FnMut(Command<N>)) {
+        for index in self.fixed..until {
+            let begin = self.schedule.begin(index);
+            let gap = if index == 0 {
+                0.0
+            } else {
+                (begin - self.schedule.end(index - 1)).max(0.0)
+            };
+            let pulse = &mut self.pulses[index];
+            pulse.gap = gap;
+            out(Command::Pulse(TimedPulse {
+                gap,
+                duration: pulse.length / pulse.feed,
+                from: pulse.from,
+                to: pulse.to,
+                serves: pulse.serves,
+            }));
+        }
+        self.fixed = until;
+        // What can still be in a window together with what follows.
+        let oldest = self.schedule.end(until - 1) - 2.0 * self.chain.total();
+        let gone = (0..until)
+            .take_while(|&index| self.schedule.end(index) < oldest)
+            .count();
+        self.pulses.drain(..gone);
+        self.fixed -= gone;
+    }
+
+    /// Chooses feedrates and overlaps of all that was not handed out.
+    fn solve(&mut self) {
+        self.sort_corners();
+        self.slow_down();
+        self.overlap_dwells();
+        self.correct();
+    }
+
+    fn allowed(&self, corner: usize) -> f64 {
+        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        let tolerance = before.tolerance.min(after.tolerance);
+        if before.smooth {
+            tolerance.max(before.steady)
+        } else {
+            tolerance
+        }
+    }
+
+    /// Overlap of a corner by itself: as much is missing before it as is gained behind it, and the
+    /// tolerance bounds both.
+    fn own_overlap(&self, corner: usize) -> f64 {
+        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        let total = self.chain.total();
+        let reach = self.allowed(corner) / before.turn;
+        let slowest = before.feed.min(after.feed);
+        if reach >= 0.5 * total * slowest {
+            return total;
+        }
+        let side = |feed: f64| self.chain.time_to(reach / feed);
+        (side(before.feed) + side(after.feed)).min(total)
+    }
+
+    /// Which corners are passed without a dwell.
+    fn sort_corners(&mut self) {
+        let total = self.chain.total();
+        let half = self.chain.position(0.5 * total);
+        for index in self.fixed..self.pulses.len() {
+            self.pulses[index].feed = self.pulses[index].limit;
+        }
+        for corner in self.fixed.saturating_sub(1)..self.pulses.len().saturating_sub(1) {
+            let before = self.pulses[corner];
+            if corner < self.fixed && before.sorted {
+                // Its feedrate was chosen for this.
+                continue;
+            }
+            let after = self.pulses[corner + 1];
+            let own = self.own_overlap(corner);
+            let pass = if before.smooth || own >= total {
+                true
+            } else if corner < self.fixed || before.turn > SHARP {
+                false
+            } else {
+                let slowest = before.feed.min(after.feed);
+                let share = (self.allowed(corner) / (before.turn * half * slowest)).min(1.0);
+                let cost = |pulse: &Pulse<N>| {
+                    let whole = (1.0 / share - 1.0) * 0.5 * pulse.length / pulse.feed;
+                    whole.min((1.0 - share) * 0.5 * total)
+                };
+                cost(&before) + cost(&after) < total - own
+            };
+            let pulse = &mut self.pulses[corner];
+            pulse.pass = pass;
+            pulse.sorted = true;
+            pulse.overlap = if pass { total } else { own };
+        }
+    }
+
+    /// Feedrate at which a corner may be passed if all of its neighbours that are passed are passed
+    /// as fast.
+    fn passing_feed(&self, corner: usize) -> f64 {
+        let pulses = &self.pulses;
+        let half = 0.5 * self.chain.total();
+        let allowed = self.allowed(corner);
+        let mut feed = pulses[corner].feed.max(pulses[corner + 1].feed);
+        for _ in 0..PASSING_STEPS {
+            let reach = feed * half;
+            let mut bound = pulses[corner].turn * feed * self.chain.position(half);
+            let mut distance = 0.0;
+            for index in (0..corner).rev() {
+                distance += pulses[index + 1].length;
+                if distance >= reach || !pulses[index].pass {
+                    break;
+                }
+                bound += pulses[index].turn * feed * self.chain.position(half - distance / feed);
+            }
+            distance = 0.0;
+            for pulse in pulses.iter().take(pulses.len() - 1).skip(corner + 1) {
+                distance += pulse.length;
+                if distance >= reach || !pulse.pass {
+                    break;
+                }
+                bound += pulse.turn * feed * self.chain.position(half - distance / feed);
+            }
+            if bound <= allowed && bound >= (1.0 - PASSING_PRECISION) * allowed {
+                break;
+            }
+            let next = feed * (AIM * allowed / bound).sqrt();
+            let most = pulses[corner].feed.max(pulses[corner + 1].feed);
+            if next >= most {
+                if feed >= most {
+                    break;
+                }
+                feed = most;
+            } else {
+                feed = next;
+            }
+        }
+        feed
+    }
+
+    /// Slows the pulses beside corners that are passed; of a long one only what is in the window.
+    fn slow_down(&mut self) {
+        let half = 0.5 * self.chain.total();
+        let last = self.pulses.len().saturating_sub(1);
+        self.slower.clear();
+        self.slower.resize(self.pulses.len(), f64::INFINITY);
+        for corner in self.fixed.saturating_sub(1)..last {
+            let pulse = &self.pulses[corner];
+            if pulse.pass && pulse.turn > 0.0 {
+                let feed = self.passing_feed(corner);
+                self.slower[corner] = feed;
+            }
+        }
+        for index in (self.fixed..self.pulses.len()).rev() {
+            let tail = self.slower[index];
+            let head = match index {
+                0 => f64::INFINITY,
+                _ => self.slower[index - 1],
+            };
+            let pulse = self.pulses[index];
+            let slow = |feed: f64| if feed < pulse.feed { feed * half } else { 0.0 };
+            let (head_length, tail_length) = (slow(head), slow(tail));
+            let whole = pulse.smooth
+                || index > 0 && self.pulses[index - 1].smooth
+                || pulse.length < 2.0 * (head_length + tail_length);
+            if whole {
+                self.pulses[index].feed = pulse.feed.min(head).min(tail);
+                continue;
+            }
+            if tail_length > 0.0 {
+                let (mut before, mut after) = self.pulses[index].split(pulse.length - tail_length);
+                before.overlap = 2.0 * half;
+                before.sorted = true;
+                after.feed = tail;
+                self.pulses[index] = before;
+                self.pulses.insert(index + 1, after);
+            }
+            if head_length > 0.0 {
+                let (mut before, after) = self.pulses[index].split(head_length);
+                before.overlap = 2.0 * half;
+                before.sorted = true;
+                before.feed = head;
+                self.pulses[index] = before;
+                self.pulses.insert(index + 1, after);
+            }
+        }
+    }
+
+    fn overlap_dwells(&mut self) {
+        for corner in self.fixed.saturating_sub(1)..self.pulses.len().saturating_sub(1) {
+            if !self.pulses[corner].pass {
+                self.pulses[corner].overlap = self.own_overlap(corner);
+            }
+        }
+    }
+
+    fn time(&mut self) {
+        self.schedule
+            .time(&self.pulses, self.fixed, &self.chain, &self.change);
+    }
+
+    /// Lengthens dwells and slows pulses until the bound holds at every corner.
+    fn correct(&mut self) {
+        self.time();
+        let count = self.pulses.len();
+        let corners = count.saturating_sub(1);
+        self.dirty.clear();
+        self.dirty.resize(count, true);
+        for round in 0.. {
+            self.slower.clear();
+            self.slower.resize(count, 1.0);
+            self.longer.clear();
+            self.longer.resize(count, 1.0);
+            let mut broken = false;
+            for corner in 0..corners {
+                if !self.dirty[corner] || self.is_settled(corner) {
+                    continue;
+                }
+                self.dirty[corner] = false;
+                let allowed = self.allowed(corner);
+                let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
+                if bound > allowed {
+                    broken = true;
+                    self.dirty[corner] = true;
+                    self.blame(bound / (AIM * allowed), allowed, round);
+                }
+            }
+            if !broken {
+                return;
+            }
+            self.apply(round);
+            self.time();
+        }
+    }
+
+    /// Whether nothing that may still change is in the window of a corner, or nothing but one arc.
+    fn is_settled(&self, corner: usize) -> bool {
+        let total = self.chain.total();
+        if self.fixed > 0
+            && corner + 1 < self.fixed
+            && self.schedule.begin(corner + 1) + total <= self.schedule.end(self.fixed - 1)
+        {
+            return true;
+        }
+        let pulses = &self.pulses;
+        let same = |index: usize| {
+            let pulse = &pulses[index];
+            pulse.smooth && pulse.pass && pulse.overlap >= total && pulse.feed >= pulse.limit
+        };
+        if !same(corner) {
+            return false;
+        }
+        let reach = 0.5 * total;
+        let mut index = corner;
+        while self.schedule.end(corner) - self.schedule.begin(index) < reach {
+            if index == 0 || !same(index - 1) {
+                return false;
+            }
+            index -= 1;
+        }
+        index = corner + 1;
+        while self.schedule.end(index) - self.schedule.end(corner) < reach {
+            if !same(index) || index + 1 >= pulses.len() {
+                return false;
+            }
+            index += 1;
+        }
+        true
+    }
+
+    /// Notes what the corners in the window must do about a bound that is broken by a factor.
+    fn blame(&mut self, excess: f64, allowed: f64, round: u32) {
+        let least = SHARE_THAT_COUNTS * allowed;
+        let excess = excess.min(4.0);
+        let mut anything = false;
+        let first_free = self.fixed.saturating_sub(1);
+        for (corner, contribution) in self.schedule.contributions() {
+            if corner < first_free || contribution <= least {
+                continue;
+            }
+            anything = true;
+            let pulse = &self.pulses[corner];
+            if pulse.pass && round < ROUNDS {
+                for index in [corner, corner + 1] {
+                    self.slower[index] = self.slower[index].max(excess.sqrt());
+                }
+                if corner < self.fixed {
+                    // What was handed out cannot be slowed any more.
+                    self.longer[corner] = self.longer[corner].max(excess.cbrt());
+                }
+            } else {
+                let factor = if round < ROUNDS { excess.cbrt() } else { 2.0 };
+                self.longer[corner] = self.longer[corner].max(factor);
+            }
+        }
+        if !anything {
+            self.longer[first_free] = self.longer[first_free].max(excess.max(1.25));
+        }
+    }
+
+    fn apply(&mut self, round: u32) {
+        let total = self.chain.total();
+        for index in 0..self.pulses.len() {
+            let slower = self.slower[index].min(2.0);
+            if index >= self.fixed && slower > 1.0 {
+                self.pulses[index].feed /= slower;
+                self.mark(index, total);
+            }
+            let longer = self.longer[index];
+            if index + 1 >= self.fixed && longer > 1.0 {
+                let pulse = &mut self.pulses[index];
+                pulse.overlap /= longer;
+                if round >= ROUNDS {
+                    pulse.pass = false;
+                }
+                if round >= ROUNDS_TO_STOP {
+                    pulse.overlap = 0.0;
+                }
+                self.mark(index, total);
+            }
+        }
+    }
+
+    /// The corners whose bound depends on a pulse.
+    fn mark(&mut self, index: usize, total: f64) {
+        let reach = 2.0 * total;
+        let (begin, end) = (self.schedule.begin(index), self.schedule.end(index));
+        for corner in (0..=index).rev() {
+            if begin - self.schedule.end(corner) > reach {
+                break;
+            }
+            self.dirty[corner] = true;
+        }
+        for corner in index..self.pulses.len() {
+            if self.schedule.begin(corner) - end > reach {
+                break;
+            }
+            self.dirty[corner] = true;
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! A straight pulse of feedrate, as the look-ahead sees it.
+//!
+//! Source: section 4.2, where a block is a rectangular pulse; arcs are sequences of chords here. Not
+//! here: its filtered motion.
+
+use toolglide_kinematics::{Serves, Vector};
+
+/// A straight stretch at constant commanded feedrate, and the corner at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pulse<const N: usize> {
+    pub(crate) from: Vector<N>,
+    pub(crate) to: Vector<N>,
+    pub(crate) direction: Vector<N>,
+    pub(crate) length: f64,
+    /// Largest feedrate.
+    pub(crate) limit: f64,
+    /// How far the motion may be from the stretch.
+    pub(crate) tolerance: f64,
+    /// Whether the next pulse goes on along the same arc, so that there is no corner in between.
+    pub(crate) smooth: bool,
+    /// What the bound comes to in the middle of an arc; a longer bound is allowed nowhere else.
+    pub(crate) steady: f64,
+    pub(crate) serves: Serves,
+    /// Feedrate that is commanded.
+    pub(crate) feed: f64,
+    /// Dwell before it, s; set once it is handed out.
+    pub(crate) gap: f64,
+    /// By how much the next pulse overlaps it behind the filters, s: the delay less the dwell.
+    pub(crate) overlap: f64,
+    /// `|t2 - t1|` at its end.
+    pub(crate) turn: f64,
+    /// Whether the corner at its end is passed without a dwell, slowly enough.
+    pub(crate) pass: bool,
+    /// Whether the corner at its end was sorted already, and pulses before it handed out.
+    pub(crate) sorted: bool,
+}
+
+impl<const N: usize> Pulse<N> {
+    /// A pulse between two different points.
+    pub(crate) fn between(
+        (from, to): (Vector<N>, Vector<N>),
+        limit: f64,
+        tolerance: f64,
+        serves: Serves,
+    ) -> Self {
+        let span = to - from;
+        let length = span.norm();
+        Self {
+            from,
+            to,
+            direction: span / length,
+            length,
+            limit,
+            tolerance,
+            smooth: false,
+            steady: 0.0,
+            serves,
+            feed: limit,
+            gap: 0.0,
+            overlap: 0.0,
+            turn: 0.0,
+            pass: false,
+            sorted: false,
+        }
+    }
+
+    /// The parts before and after a distance.
+    pub(crate) fn split(&self, distance: f64) -> (Self, Self) {
+        let middle = self.from + self.direction * distance;
+        let before = Self {
+            to: middle,
+            length: distance,
+            smooth: false,
+            turn: 0.0,
+            pass: true,
+            ..*self
+        };
+        let after = Self {
+            from: middle,
+            length: self.length - distance,
+            ..*self
+        };
+        (before, after)
+    }
+}

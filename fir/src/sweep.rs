@@ -1,0 +1,381 @@
+//! Pulses of velocity in, pieces of constant jerk out: the exact motion behind a chain of filters.
+//!
+//! Source: equations 4.1 to 4.7 for any sequence of pulses. Behind two moving averages the jerk is a
+//! sum of commanded velocities at four delays, so a knot costs a few additions however many pulses
+//! are under way; the closed form of position, velocity and acceleration takes the rounding out
+//! every few knots. Not here: when pulses begin.
+
+use crate::cubic::CubicChain;
+use std::collections::VecDeque;
+use toolglide_kinematics::{Piece, Sample, Serves, Vector};
+
+/// Instants nearer than this are one, s: far below any period and above the rounding of times of some
+/// minutes.
+const SAME_INSTANT: f64 = 1e-12;
+
+/// Knots after which the state is computed afresh: rounding of so many steps is far below what the
+/// judge can see.
+const KNOTS_TO_ANCHOR: u32 = 32;
+
+/// Time after which the clock is set back by as much, s: a power of two, so that subtracting it is
+/// exact, and short, so that times keep their digits.
+const CLOCK_SPAN: f64 = 64.0;
+
+/// What the look-ahead has decided.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Command<const N: usize> {
+    /// A straight pulse, `gap` after the end of the one before.
+    Pulse(TimedPulse<N>),
+    /// The motion comes to rest.
+    Rest,
+    /// A pause at rest, or moves that lead nowhere.
+    Pause { duration: f64, serves: Serves },
+    /// From here on, two other filters; only at rest.
+    Filters { long: f64, short: f64 },
+}
+
+/// A straight pulse with its times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TimedPulse<const N: usize> {
+    pub(crate) gap: f64,
+    pub(crate) duration: f64,
+    pub(crate) from: Vector<N>,
+    pub(crate) to: Vector<N>,
+    pub(crate) serves: Serves,
+}
+
+/// A pulse under way.
+#[derive(Clone, Copy, Debug)]
+struct Active<const N: usize> {
+    begin: f64,
+    end: f64,
+    from: Vector<N>,
+    to: Vector<N>,
+    velocity: Vector<N>,
+    serves: Serves,
+}
+
+/// A change of the commanded velocity.
+#[derive(Clone, Copy, Debug)]
+struct Step<const N: usize> {
+    time: f64,
+    velocity: Vector<N>,
+}
+
+/// A delay at which the commanded velocity enters the jerk.
+#[derive(Clone, Copy, Debug)]
+struct Tap {
+    delay: f64,
+    weight: f64,
+    /// Index of the next step to arrive.
+    next: usize,
+}
+
+/// The exact motion behind a chain, piece by piece.
+#[derive(Clone, Debug)]
+pub(crate) struct Sweep<const N: usize> {
+    chain: CubicChain,
+    commands: VecDeque<Command<N>>,
+    taps: Vec<Tap>,
+    steps: VecDeque<Step<N>>,
+    active: VecDeque<Active<N>>,
+    /// How many of the active pulses have begun.
+    begun: usize,
+    state: Sample<N>,
+    time: f64,
+    /// End of the last pulse commanded.
+    commanded: f64,
+    resting: bool,
+    since_anchor: u32,
+}
+
+impl<const N: usize> Sweep<N> {
+    /// At rest at `start`, with room for `capacity` commands.
+    pub(crate) fn new(start: Vector<N>, chain: CubicChain, capacity: usize) -> Self {
+        let mut sweep = Self {
+            taps: Vec::with_capacity(4 * chain.comb().len()),
+            chain,
+            commands: VecDeque::with_capacity(capacity),
+            steps: VecDeque::with_capacity(2 * capacity),
+            active: VecDeque::with_capacity(capacity),
+            begun: 0,
+            state: Sample::at_rest(start),
+            time: 0.0,
+            commanded: 0.0,
+            resting: false,
+            since_anchor: 0,
+        };
+        sweep.restart(start);
+        sweep
+    }
+
+    /// Takes what comes next.
+    pub(crate) fn push(&mut self, command: Command<N>) {
+        self.commands.push_back(command);
+    }
+
+    /// The next piece; `None` when more commands are needed.
+    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
+        loop {
+            let knot = self.next_knot();
+            if knot <= self.horizon() {
+                if let Some(piece) = self.advance(knot) {
+                    return Some(piece);
+                }
+                continue;
+            }
+            if self.resting {
+                // Every step has arrived at every tap.
+                let at = self.state.position;
+                self.restart(at);
+                continue;
+            }
+            match self.commands.pop_front()? {
+                Command::Pulse(pulse) => self.begin(&pulse),
+                Command::Rest => {
+                    if self.active.is_empty() {
+                        continue;
+                    }
+                    self.resting = true;
+                    self.steps.push_back(Step {
+                        time: self.commanded,
+                        velocity: Vector::zeros(),
+                    });
+                }
+                Command::Pause { duration, serves } => {
+                    let at = self.state.position;
+                    return Some(Piece::new(&Sample::at_rest(at), duration, at, serves));
+                }
+                Command::Filters { long, short } => {
+                    self.chain = CubicChain::of_two(long, short);
+                    let at = self.state.position;
+                    self.restart(at);
+                }
+            }
+        }
+    }
+
+    /// Until when the command is known.
+    fn horizon(&self) -> f64 {
+        if self.resting {
+            f64::MAX
+        } else {
+            self.commanded
+        }
+    }
+
+    fn begin(&mut self, pulse: &TimedPulse<N>) {
+        if pulse.gap > SAME_INSTANT {
+            self.steps.push_back(Step {
+                time: self.commanded,
+                velocity: Vector::zeros(),
+            });
+            self.commanded += pulse.gap;
+        }
+        let velocity = (pulse.to - pulse.from) / pulse.duration;
+        let begin = self.commanded;
+        self.commanded += pulse.duration;
+        self.steps.push_back(Step {
+            time: begin,
+            velocity,
+        });
+        self.active.push_back(Active {
+            begin,
+            end: self.commanded,
+            from: pulse.from,
+            to: pulse.to,
+            velocity,
+            serves: pulse.serves,
+        });
+    }
+
+    /// Begins afresh at rest.
+    fn restart(&mut self, at: Vector<N>) {
+        self.state = Sample::at_rest(at);
+        self.time = 0.0;
+        self.commanded = 0.0;
+        self.resting = false;
+        self.since_anchor = 0;
+        self.begun = 0;
+        self.active.clear();
+        self.steps.clear();
+        // What was commanded before the first step.
+        self.steps.push_back(Step {
+            time: f64::NEG_INFINITY,
+            velocity: Vector::zeros(),
+        });
+        let (long, short) = (self.chain.long(), self.chain.short());
+        let product = long * short;
+        self.taps.clear();
+        for tooth in self.chain.comb() {
+            for (delay, sign) in [(0.0, 1.0), (short, -1.0), (long, -1.0), (long + short, 1.0)] {
+                self.taps.push(Tap {
+                    delay: tooth.delay + delay,
+                    weight: sign * tooth.weight / product,
+                    next: 1,
+                });
+            }
+        }
+    }
+
+    /// When the jerk changes next, as far as is known.
+    fn next_knot(&self) -> f64 {
+        let arrivals = self.taps.iter().filter_map(|tap| {
+            let step = self.steps.get(tap.next)?;
+            Some(step.time + tap.delay)
+        });
+        arrivals.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Goes on to a knot; gives the piece up to it unless it has no length.
+    fn advance(&mut self, knot: f64) -> Option<Piece<N>> {
+        let duration = knot - self.time;
+        let piece = if duration > SAME_INSTANT {
+            let serves = self.serves();
+            let start = self.state;
+            self.time = knot;
+            self.integrate(duration);
+            self.expire();
+            self.since_anchor += 1;
+            if self.since_anchor >= KNOTS_TO_ANCHOR || self.active.is_empty() {
+                self.anchor();
+            }
+            Some((start, serves))
+        } else {
+            None
+        };
+        self.arrive(knot);
+        if self.resting && self.next_knot().is_infinite() {
+            self.land();
+        }
+        let (start, serves) = piece?;
+        let end = self.state.position;
+        self.set_back_clock();
+        Some(Piece::new(&start, duration, end, serves))
+    }
+
+    /// Rests at the end of the last pulse, exactly.
+    fn land(&mut self) {
+        if let Some(last) = self.active.back() {
+            self.state = Sample::at_rest(last.to);
+            self.active.clear();
+            self.begun = 0;
+        }
+    }
+
+    /// The pulses that shape the motion now.
+    fn serves(&mut self) -> Serves {
+        while let Some(next) = self.active.get(self.begun)
+            && next.begin <= self.time + SAME_INSTANT
+        {
+            self.begun += 1;
+        }
+        let none = Serves { first: 0, last: 0 };
+        let first = self.active.front().map_or(none, |pulse| pulse.serves);
+        let last = self
+            .active
+            .get(self.begun.saturating_sub(1))
+            .map_or(first, |pulse| pulse.serves);
+        Serves {
+            first: first.first,
+            last: last.last,
+        }
+    }
+
+    fn integrate(&mut self, duration: f64) {
+        let t = duration;
+        let Sample {
+            position,
+            velocity,
+            acceleration,
+            jerk,
+        } = self.state;
+        self.state = Sample {
+            position: position + (velocity + (acceleration * 0.5 + jerk * (t / 6.0)) * t) * t,
+            velocity: velocity + (acceleration + jerk * (0.5 * t)) * t,
+            acceleration: acceleration + jerk * t,
+            jerk,
+        };
+    }
+
+    /// Drops the pulses whose effect is over; the last one to go leaves its end behind.
+    fn expire(&mut self) {
+        let total = self.chain.total();
+        while let Some(oldest) = self.active.front()
+            && oldest.end + total <= self.time + SAME_INSTANT
+        {
+            if self.active.len() == 1 {
+                // A gap as long as the chain remembers, or the end.
+                self.state = Sample {
+                    jerk: self.state.jerk,
+                    ..Sample::at_rest(oldest.to)
+                };
+            }
+            self.active.pop_front();
+            self.begun = self.begun.saturating_sub(1);
+        }
+    }
+
+    /// The state from the closed form.
+    fn anchor(&mut self) {
+        self.since_anchor = 0;
+        let mut position = self
+            .active
+            .front()
+            .map_or(self.state.position, |oldest| oldest.from);
+        let mut velocity = Vector::zeros();
+        let mut acceleration = Vector::zeros();
+        for pulse in &self.active {
+            let (since, after) = (self.time - pulse.begin, self.time - pulse.end);
+            if since <= 0.0 {
+                break;
+            }
+            let change = |response: fn(&CubicChain, f64) -> f64| {
+                response(&self.chain, since) - response(&self.chain, after)
+            };
+            position += pulse.velocity * change(CubicChain::position);
+            velocity += pulse.velocity * change(CubicChain::velocity);
+            acceleration += pulse.velocity * change(CubicChain::acceleration);
+        }
+        self.state.position = position;
+        self.state.velocity = velocity;
+        self.state.acceleration = acceleration;
+    }
+
+    /// Lets the steps that are due arrive at their taps.
+    fn arrive(&mut self, knot: f64) {
+        let mut jerk = Vector::zeros();
+        let mut oldest = usize::MAX;
+        for tap in &mut self.taps {
+            while let Some(step) = self.steps.get(tap.next)
+                && step.time + tap.delay <= knot + SAME_INSTANT
+            {
+                tap.next += 1;
+            }
+            oldest = oldest.min(tap.next - 1);
+            jerk += self.steps[tap.next - 1].velocity * tap.weight;
+        }
+        self.state.jerk = jerk;
+        if oldest > 0 {
+            self.steps.drain(..oldest);
+            for tap in &mut self.taps {
+                tap.next -= oldest;
+            }
+        }
+    }
+
+    fn set_back_clock(&mut self) {
+        if self.time < CLOCK_SPAN {
+            return;
+        }
+        self.time -= CLOCK_SPAN;
+        self.commanded -= CLOCK_SPAN;
+        for step in &mut self.steps {
+            step.time -= CLOCK_SPAN;
+        }
+        for pulse in &mut self.active {
+            pulse.begin -= CLOCK_SPAN;
+            pulse.end -= CLOCK_SPAN;
+        }
+    }
+}
