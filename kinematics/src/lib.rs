@@ -36,7 +36,7 @@ pub use machine::{Axis, AxisKind, KinematicsError, MachineKinematics};
 pub use nalgebra;
 pub use piece::{Piece, Serves};
 pub use plan::{Plan, Sampler, Trajectory};
-pub use planner::{MotionPlanner, PlanError};
+pub use planner::{MotionPlanner, PlanError, WindowTally};
 pub use pose::ToolPose;
 pub use pose_leg::{PoseLeg, PosePath};
 pub use pose_move::{PoseEnd, PoseFeed, PoseMove};

@@ -94,6 +94,25 @@ impl<const N: usize> Limits<N> {
         ))
     }
 
+    /// The same with every limit multiplied by `factor`.
+    ///
+    /// # Errors
+    /// [`LimitsError`] when a product is not positive and finite.
+    pub fn scaled(&self, factor: f64) -> Result<Self, LimitsError> {
+        let mut scaled = *self;
+        for axis in 0..N {
+            let limits = AxisLimits::new(
+                factor * self.velocity[axis],
+                factor * self.acceleration[axis],
+                factor * self.jerk[axis],
+            )?;
+            scaled.velocity[axis] = limits.velocity;
+            scaled.acceleration[axis] = limits.acceleration;
+            scaled.jerk[axis] = limits.jerk;
+        }
+        Ok(scaled)
+    }
+
     /// Largest velocity of each axis.
     #[must_use]
     pub fn velocity(&self) -> &Vector<N> {

@@ -25,6 +25,26 @@ pub trait MotionPlanner<const N: usize> {
 
     /// The next piece of finished motion: in order, contiguous, never taken back.
     fn pull(&mut self) -> Option<Piece<N>>;
+
+    /// How the windows came out so far, for a planner that solves windows and may keep an older plan.
+    fn windows(&self) -> Option<WindowTally> {
+        None
+    }
+}
+
+/// How the windows of a planner came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WindowTally {
+    /// Windows that were planned.
+    pub windows: u64,
+    /// Those that were solved twice, because the first motion was worse than the plan before.
+    pub retried: u64,
+    /// Those that kept the plan before, with its stop.
+    pub kept: u64,
+    /// Stretches between stops.
+    pub stretches: u64,
+    /// Those that are travelled by another method, which is faster there.
+    pub yielded: u64,
 }
 
 /// Why a planner cannot take a move.

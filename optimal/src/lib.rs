@@ -4,8 +4,20 @@
 //! motion inside the tolerance and the limits by a [`WindowSolver`]. This crate does not know
 //! machines or programs, and no general convex solver.
 
+mod accept;
+mod chords;
+mod guess;
+mod horizon;
+mod planner;
+mod runs;
+mod safe;
+mod settings;
+mod span;
+mod stream;
 mod window;
 
+pub use planner::{TimeOptimal, plan_with};
+pub use settings::{Effort, Settings};
 pub use window::{
     EndState, Segment, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSolver,
 };

@@ -1,0 +1,430 @@
+//! Windows, one after the other: plan to a stop, hand out the first part, go on from there.
+//!
+//! Source: ours. The plan always ends in a full stop at the end of what has been planned. Each window
+//! starts in the state up to which motion has been handed out, covers what was planned behind it and
+//! something new, and ends at rest. Its motion takes the place of the plan only when it has been
+//! accepted and is not worse; else the plan stays as it is, the motion comes to its stop, and goes on
+//! from rest. Not here: how a window is solved.
+
+use crate::accept::accept;
+use crate::guess::Guess;
+use crate::safe;
+use crate::settings::Settings;
+use crate::span::{Span, steps, weakest};
+use crate::window::{EndState, Segment, Window, WindowMotion, WindowSolver};
+use std::collections::VecDeque;
+use toolglide_kinematics::{Limits, Piece, Sample, Vector, WindowTally};
+
+/// Length of a window in times to stop: the part that is handed out, and about one for the way on to be
+/// free and one for the stop at the end.
+const WINDOW: f64 = 4.5;
+
+/// What is handed out of a window, in times to stop.
+const COMMIT: f64 = 3.3;
+
+/// Fewest spans of a window, where there are as many.
+const FEWEST_SPANS: usize = 4;
+
+/// Most spans of a window.
+pub(crate) const MOST_SPANS: usize = 64;
+
+/// Most intervals of a window: rounding grows with the sixth power of their number.
+const MOST_STEPS: usize = 560;
+
+/// Share of every limit that is kept back from the solver, which meets them to its own precision only.
+const MARGIN: f64 = 1e-4;
+
+/// How much slower than a guess the first motion from rest is taken to be.
+const FROM_REST: f64 = 1.1;
+
+/// By what factor planned motion differs from its guess at most.
+const FACTORS: (f64, f64) = (0.7, 1.6);
+
+/// What was planned already may take this much longer in a new plan, which need not brake at its end;
+/// anything more is a bad place to have been led to.
+const WORSE: f64 = 1.001;
+
+/// How much slower than from rest to rest the guess of new spans is, on a grid of intervals.
+const STOPPING: f64 = 1.2;
+
+/// Plans spans from stop to stop.
+#[derive(Clone, Debug)]
+pub(crate) struct Horizon<S, const N: usize> {
+    solver: S,
+    solves: usize,
+    limits: Limits<N>,
+    shrunk: Limits<N>,
+    weakest: (f64, f64),
+    spans: VecDeque<Span<N>>,
+    /// Where motion has been handed out to.
+    start: EndState<N>,
+    /// The plan from there to a stop at the end of the first `planned` spans.
+    current: WindowMotion<N>,
+    planned: usize,
+    /// What the guess of those spans was.
+    expected: Vec<f64>,
+    free: Guess,
+    guess: Guess,
+    segments: Vec<Segment<N>>,
+    shrunk_segments: Vec<Segment<N>>,
+    candidate: WindowMotion<N>,
+    other: WindowMotion<N>,
+    ratios: Vec<f64>,
+    pieces: VecDeque<Piece<N>>,
+    tally: WindowTally,
+}
+
+fn motion_for<const N: usize>() -> WindowMotion<N> {
+    let most = MOST_STEPS + crate::span::MOST_STEPS;
+    WindowMotion {
+        durations: Vec::with_capacity(MOST_SPANS),
+        states: Vec::with_capacity(most + 1),
+        jerks: Vec::with_capacity(most),
+    }
+}
+
+impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
+    /// At rest at `start`.
+    pub(crate) fn new(solver: S, start: Vector<N>, settings: &Settings<N>) -> Self {
+        Self {
+            solver,
+            solves: settings.effort.solves(),
+            limits: settings.limits,
+            shrunk: settings
+                .limits
+                .scaled(1.0 - MARGIN)
+                .unwrap_or(settings.limits),
+            weakest: weakest(&settings.limits),
+            spans: VecDeque::with_capacity(4 * MOST_SPANS),
+            start: EndState::rest(start),
+            current: motion_for(),
+            planned: 0,
+            expected: Vec::with_capacity(MOST_SPANS),
+            free: Guess::with_capacity(4 * MOST_SPANS),
+            guess: Guess::with_capacity(MOST_SPANS),
+            segments: Vec::with_capacity(MOST_SPANS),
+            shrunk_segments: Vec::with_capacity(MOST_SPANS),
+            candidate: motion_for(),
+            other: motion_for(),
+            ratios: Vec::with_capacity(MOST_SPANS),
+            pieces: VecDeque::with_capacity(2 * MOST_STEPS),
+            tally: WindowTally::default(),
+        }
+    }
+
+    /// Takes the next span.
+    pub(crate) fn push(&mut self, span: Span<N>) {
+        self.spans.push_back(span);
+    }
+
+    /// Plans as far as can be seen; the last line has been pushed to its end.
+    pub(crate) fn plan(&mut self) {
+        while self.advance(false) {}
+    }
+
+    /// The motion rests at the end of the last span.
+    pub(crate) fn rest(&mut self) {
+        while self.advance(true) {}
+    }
+
+    /// The next piece of motion that is settled.
+    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
+        self.pieces.pop_front()
+    }
+
+    /// How many windows there were.
+    pub(crate) fn tally(&self) -> WindowTally {
+        self.tally
+    }
+
+    /// Plans a window and hands out its first part; `false` when nothing can be done yet. Where the
+    /// motion is `closing`, it rests at the end of the last span.
+    fn advance(&mut self, closing: bool) -> bool {
+        let known = self.spans.len();
+        if known == 0 {
+            return false;
+        }
+        let speed = self.start.velocity.norm();
+        self.free
+            .fill(self.spans.iter(), speed, !closing, self.weakest);
+        let (reach, enough) = self.reach(WINDOW, FEWEST_SPANS);
+        let window = reach.max((self.planned + 1).min(known));
+        if closing && window == known && self.planned == known {
+            self.commit(known);
+            return true;
+        }
+        if !closing && (!enough || window == self.planned) {
+            return false;
+        }
+        self.tally.windows += 1;
+        if let Some(planned) = self.improve(window) {
+            let (first, _) = self.reach(COMMIT, 1);
+            let part = if closing && planned == known {
+                known
+            } else {
+                first.min(planned.saturating_sub(2)).max(1)
+            };
+            self.commit(part);
+        } else {
+            self.tally.kept += 1;
+            if self.planned > 0 {
+                self.commit(self.planned);
+            } else {
+                self.stop_at_a_move();
+            }
+        }
+        true
+    }
+
+    /// How many spans take some times to stop, and whether there are as many.
+    fn reach(&mut self, stops: f64, fewest: usize) -> (usize, bool) {
+        let (mut time, mut stop_time, mut nodes) = (0.0, 0.0_f64, 0);
+        for (index, (span, duration)) in self.spans.iter_mut().zip(&self.free.times).enumerate() {
+            if index >= fewest && time >= stops * stop_time {
+                return (index, true);
+            }
+            let steps = if span.steps > 0 {
+                span.steps
+            } else {
+                span.steps_for(*duration)
+            };
+            if index > 0 && nodes + steps > MOST_STEPS || index >= MOST_SPANS {
+                return (index, true);
+            }
+            nodes += steps;
+            time += duration;
+            stop_time = stop_time.max(span.stop_time);
+        }
+        let enough = time >= stops * stop_time && self.spans.len() >= fewest;
+        (self.spans.len(), enough)
+    }
+
+    /// Finds a plan for the first `count` spans that is accepted and no worse than the one there is;
+    /// from rest, where there is none yet, also for fewer. Gives how many it covers.
+    fn improve(&mut self, mut count: usize) -> Option<usize> {
+        loop {
+            if self.try_window(count) {
+                return Some(count);
+            }
+            if self.planned > 0 || count == 1 {
+                return None;
+            }
+            count /= 2;
+        }
+    }
+
+    fn try_window(&mut self, count: usize) -> bool {
+        let speed = self.start.velocity.norm();
+        for (span, duration) in self.spans.iter_mut().zip(&self.free.times).take(count) {
+            if span.steps == 0 {
+                span.steps = span.steps_for(*duration);
+            }
+        }
+        self.guess
+            .fill(self.spans.range(..count), speed, false, self.weakest);
+        self.lay_segments(count);
+        self.guess_motion(count);
+        let mut found = self.solve(count);
+        let retained: f64 = self.current.durations.iter().sum();
+        let worse = found
+            && self.planned > 0
+            && self.candidate.durations[..self.planned].iter().sum::<f64>() > WORSE * retained;
+        if self.planned > 0 && (!found || worse) {
+            self.tally.retried += 1;
+            std::mem::swap(&mut self.candidate, &mut self.other);
+            self.continue_plan(count);
+            let again = self.solve(count);
+            if found && (!again || self.other.duration() <= self.candidate.duration()) {
+                std::mem::swap(&mut self.candidate, &mut self.other);
+            }
+            found = found || again;
+        }
+        if !found {
+            return false;
+        }
+        let stopping: f64 = self
+            .spans
+            .range(self.planned..count)
+            .map(safe::stop_to_stop)
+            .sum();
+        if self.candidate.duration() > retained + stopping && self.planned > 0 {
+            return false;
+        }
+        std::mem::swap(&mut self.current, &mut self.candidate);
+        self.planned = count;
+        self.expected.clear();
+        self.expected.extend(&self.guess.times);
+        true
+    }
+
+    /// The segments of a window, for the check and, a little smaller, for the solver.
+    fn lay_segments(&mut self, count: usize) {
+        self.segments.clear();
+        for (index, span) in self.spans.range(..count).enumerate() {
+            let next = self.spans.get(index + 1).filter(|_| index + 1 < count);
+            self.segments.push(Segment {
+                start: span.start,
+                end: span.end,
+                tolerance: span.tube,
+                corner_tolerance: next
+                    .and_then(|next| span.ball_at_end.map(|ball| ball.min(next.ball_at_start))),
+                feedrate: span.feedrate,
+                steps: span.steps,
+            });
+        }
+        self.shrunk_segments.clear();
+        let less = |value: f64| value * (1.0 - MARGIN);
+        self.shrunk_segments
+            .extend(self.segments.iter().map(|segment| Segment {
+                tolerance: less(segment.tolerance),
+                corner_tolerance: segment.corner_tolerance.map(less),
+                feedrate: less(segment.feedrate),
+                ..*segment
+            }));
+    }
+
+    /// A guess of durations: what was planned, sped up or slowed down as its guess was; what is new, as
+    /// much slower than its guess as the rest.
+    fn guess_motion(&mut self, count: usize) {
+        self.ratios.clear();
+        self.ratios.extend(
+            self.current
+                .durations
+                .iter()
+                .zip(&self.expected)
+                .map(|(duration, expected)| duration / expected),
+        );
+        self.candidate.durations.clear();
+        for (ratio, time) in self.ratios.iter().zip(&self.guess.times) {
+            self.candidate.durations.push(time * ratio);
+        }
+        self.ratios.sort_unstable_by(f64::total_cmp);
+        let usual = match self.ratios.get(self.ratios.len() / 2) {
+            Some(median) => median.clamp(FACTORS.0, FACTORS.1),
+            None => FROM_REST,
+        };
+        let new = self.guess.times[self.planned.min(count)..count].iter();
+        self.candidate
+            .durations
+            .extend(new.map(|time| time * usual));
+        self.guess_states();
+    }
+
+    /// The plan there is, and new spans from stop to stop behind it.
+    fn continue_plan(&mut self, count: usize) {
+        self.candidate.durations.clear();
+        self.candidate.durations.extend(&self.current.durations);
+        let new = self.spans.range(self.planned..count);
+        self.candidate
+            .durations
+            .extend(new.map(|span| STOPPING * safe::stop_to_stop(span)));
+        self.guess_states();
+    }
+
+    /// States and jerks for the durations of the candidate: those of the plan in its own time, and
+    /// constant speed along what is new.
+    fn guess_states(&mut self) {
+        let WindowMotion {
+            durations,
+            states,
+            jerks,
+        } = &mut self.candidate;
+        states.clear();
+        jerks.clear();
+        let mut node = 0;
+        for (index, (segment, &duration)) in self.segments.iter().zip(durations.iter()).enumerate()
+        {
+            if index < self.planned {
+                let ratio = self.current.durations[index] / duration;
+                for _ in 0..segment.steps {
+                    let state = &self.current.states[node];
+                    states.push(EndState {
+                        position: state.position,
+                        velocity: state.velocity * ratio,
+                        acceleration: state.acceleration * (ratio * ratio),
+                    });
+                    jerks.push(self.current.jerks[node] * ratio.powi(3));
+                    node += 1;
+                }
+                continue;
+            }
+            let span = segment.end - segment.start;
+            for step in 0..segment.steps {
+                states.push(EndState {
+                    position: segment.start + span * (steps(step) / steps(segment.steps)),
+                    velocity: span / duration,
+                    acceleration: Vector::zeros(),
+                });
+                jerks.push(Vector::zeros());
+            }
+        }
+        if let Some(last) = self.segments.last() {
+            states.push(EndState::rest(last.end));
+        }
+        if let Some(first) = states.first_mut() {
+            *first = self.start;
+        }
+    }
+
+    /// Solves the window for the candidate; whether its motion may be executed.
+    fn solve(&mut self, count: usize) -> bool {
+        let end = EndState::rest(self.segments[count - 1].end);
+        let window = Window {
+            start: self.start,
+            end,
+            segments: &self.shrunk_segments,
+            limits: &self.shrunk,
+        };
+        let solved = self.solver.solve(&window, &mut self.candidate, self.solves);
+        if solved.is_err() {
+            return false;
+        }
+        let window = Window {
+            segments: &self.segments,
+            limits: &self.limits,
+            ..window
+        };
+        accept(&window, &mut self.candidate).is_ok()
+    }
+
+    /// Hands out the plan of the first `count` spans.
+    fn commit(&mut self, count: usize) {
+        let mut node = 0;
+        for (span, duration) in self.spans.drain(..count).zip(&self.current.durations) {
+            let interval = duration / steps(span.steps);
+            for _ in 0..span.steps {
+                let state = &self.current.states[node];
+                let start = Sample {
+                    position: state.position,
+                    velocity: state.velocity,
+                    acceleration: state.acceleration,
+                    jerk: self.current.jerks[node],
+                };
+                node += 1;
+                let end = self.current.states[node].position;
+                self.pieces
+                    .push_back(Piece::new(&start, interval, end, span.serves));
+            }
+        }
+        self.start = self.current.states[node];
+        self.planned -= count;
+        self.current.durations.drain(..count);
+        self.expected.drain(..count);
+        self.current.states.drain(..node);
+        self.current.jerks.drain(..node);
+        if self.planned == 0 {
+            self.current.states.clear();
+        }
+    }
+
+    /// Travels the next straight line from rest to rest.
+    fn stop_at_a_move(&mut self) {
+        let count = safe::on_one_line(self.spans.iter());
+        let (Some(first), Some(last)) = (self.spans.front(), self.spans.get(count - 1)) else {
+            return;
+        };
+        safe::travel(first, last, |piece| self.pieces.push_back(piece));
+        self.start = EndState::rest(last.end);
+        self.spans.drain(..count);
+    }
+}

@@ -1,0 +1,294 @@
+//! The planner: time-optimal motion, and smoothed corners where they are faster.
+//!
+//! Source: ours. Both plan every stretch between two stops of the path; the faster motion is handed
+//! out, so that it is never slower than smoothed corners. A stretch too long to be held is settled in
+//! favor of whoever is ahead. Not here: either plan.
+
+use crate::settings::Settings;
+use crate::stream::{Event, Stream};
+use crate::window::WindowSolver;
+use std::collections::VecDeque;
+use toolglide_kinematics::numeric::TIME_SLACK;
+use toolglide_kinematics::{
+    MotionPlanner, Move, Piece, Plan, PlanError, Toolpath, Vector, WindowTally, check_contact,
+};
+use toolglide_smoothing::KinematicSmoothing;
+
+/// Pieces held of either motion before a stretch is settled: some minutes, and some ten megabytes.
+const MOST_HELD: usize = 1 << 16;
+
+/// Plans time-optimal motion while the path is being read.
+#[derive(Clone, Debug)]
+pub struct TimeOptimal<S, const N: usize> {
+    position: Vector<N>,
+    index: u32,
+    finished: bool,
+    optimal: Stream<S, N>,
+    smoothing: KinematicSmoothing<N>,
+    /// Pieces of the time-optimal motion, and where its stretches end.
+    mine: VecDeque<Event<N>>,
+    /// Complete stretches among them.
+    complete: usize,
+    /// Pieces of the smoothed corners.
+    theirs: VecDeque<Piece<N>>,
+    /// Last move of each stretch that ends in a stop.
+    ends: VecDeque<u32>,
+    settled: Settled,
+    /// Whether the time-optimal motion of the stretch under way has been taken to its end.
+    rested: bool,
+    tally: WindowTally,
+}
+
+/// What is known of the stretch under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Settled {
+    /// Not yet which motion is faster.
+    Open,
+    /// Time-optimal motion up to the end of the stretch.
+    Mine,
+    /// Smoothed corners up to the end of the stretch.
+    Theirs,
+}
+
+impl<S: WindowSolver<N>, const N: usize> TimeOptimal<S, N> {
+    /// A planner whose motion begins at rest at `start`, with a solver for its windows.
+    #[must_use]
+    pub fn with_solver(solver: S, start: Vector<N>, settings: &Settings<N>) -> Self {
+        Self {
+            position: start,
+            index: 0,
+            finished: false,
+            optimal: Stream::new(solver, start, settings),
+            smoothing: KinematicSmoothing::new(
+                start,
+                &toolglide_smoothing::Settings::new(settings.limits),
+            ),
+            mine: VecDeque::with_capacity(MOST_HELD + 1),
+            complete: 0,
+            theirs: VecDeque::with_capacity(MOST_HELD + 1),
+            ends: VecDeque::new(),
+            settled: Settled::Open,
+            rested: false,
+            tally: WindowTally::default(),
+        }
+    }
+
+    /// Takes what both planners have ready, as far as there is room for it.
+    fn gather(&mut self) {
+        while self.mine.len() < MOST_HELD
+            && let Some(event) = self.optimal.pull()
+        {
+            if event == Event::Rest {
+                self.complete += 1;
+            }
+            self.mine.push_back(event);
+        }
+        while self.theirs.len() < MOST_HELD
+            && let Some(piece) = self.smoothing.pull()
+        {
+            self.theirs.push_back(piece);
+        }
+    }
+
+    /// Pieces of the smoothed corners in the stretch under way; `None` while it is not complete.
+    fn their_stretch(&self) -> Option<usize> {
+        let end = *self.ends.front()?;
+        let beyond = self
+            .theirs
+            .back()
+            .is_some_and(|piece| piece.serves().last > end);
+        let complete = beyond || (self.finished && self.theirs.len() < MOST_HELD);
+        complete.then(|| {
+            self.theirs
+                .partition_point(|piece| piece.serves().last <= end)
+        })
+    }
+
+    /// Settles the stretch under way if that is possible by now.
+    fn settle(&mut self) {
+        if self.settled != Settled::Open {
+            return;
+        }
+        if self.complete > 0
+            && let Some(count) = self.their_stretch()
+        {
+            let mine: f64 = self
+                .mine
+                .iter()
+                .map_while(|event| match event {
+                    Event::Piece(piece) => Some(piece.duration()),
+                    Event::Rest => None,
+                })
+                .sum();
+            let theirs: f64 = self.theirs.range(..count).map(Piece::duration).sum();
+            self.decide(mine, theirs, count > 0);
+        } else if self.mine.len() >= MOST_HELD || self.theirs.len() >= MOST_HELD {
+            let (mine, theirs) = self.progress();
+            self.decide(mine, theirs, true);
+        }
+    }
+
+    fn decide(&mut self, mine: f64, theirs: f64, moved: bool) {
+        let faster = mine < theirs - TIME_SLACK || !moved;
+        self.settled = if faster {
+            Settled::Mine
+        } else {
+            Settled::Theirs
+        };
+        if moved {
+            self.tally.stretches += 1;
+            self.tally.yielded += u64::from(!faster);
+        }
+    }
+
+    /// Time that either motion takes to the last move that both have finished.
+    fn progress(&self) -> (f64, f64) {
+        let mine = || {
+            self.mine.iter().filter_map(|event| match event {
+                Event::Piece(piece) => Some(piece),
+                Event::Rest => None,
+            })
+        };
+        let (Some(my_last), Some(their_last)) = (mine().next_back(), self.theirs.back()) else {
+            return (0.0, 1.0);
+        };
+        let common = my_last.serves().first.min(their_last.serves().first);
+        let time = |pieces: &mut dyn Iterator<Item = &Piece<N>>| -> f64 {
+            pieces
+                .take_while(|piece| piece.serves().last < common)
+                .map(Piece::duration)
+                .sum()
+        };
+        (time(&mut mine()), time(&mut self.theirs.iter()))
+    }
+
+    /// The next piece of a settled stretch; leaves the stretch when both motions have.
+    fn hand_out(&mut self) -> Option<Piece<N>> {
+        match self.settled {
+            Settled::Open => return None,
+            Settled::Mine => {
+                self.drop_theirs();
+                if let Some(piece) = self.next_of_mine() {
+                    return Some(piece);
+                }
+            }
+            Settled::Theirs => {
+                while self.next_of_mine().is_some() {}
+                if let Some(piece) = self.theirs.front()
+                    && self.is_in_stretch(piece)
+                {
+                    return self.theirs.pop_front();
+                }
+            }
+        }
+        if self.rested && self.their_stretch() == Some(0) {
+            self.rested = false;
+            self.complete -= 1;
+            self.ends.pop_front();
+            self.settled = Settled::Open;
+        }
+        None
+    }
+
+    /// The next time-optimal piece of the stretch under way.
+    fn next_of_mine(&mut self) -> Option<Piece<N>> {
+        if self.rested {
+            return None;
+        }
+        match self.mine.pop_front()? {
+            Event::Piece(piece) => Some(piece),
+            Event::Rest => {
+                self.rested = true;
+                None
+            }
+        }
+    }
+
+    fn drop_theirs(&mut self) {
+        while let Some(piece) = self.theirs.front()
+            && self.is_in_stretch(piece)
+        {
+            self.theirs.pop_front();
+        }
+    }
+
+    fn is_in_stretch(&self, piece: &Piece<N>) -> bool {
+        self.ends
+            .front()
+            .is_none_or(|end| piece.serves().last <= *end)
+    }
+}
+
+impl<S: WindowSolver<N>, const N: usize> MotionPlanner<N> for TimeOptimal<S, N> {
+    fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
+        let index = self.index;
+        if self.finished {
+            return Err(PlanError::Finished { index });
+        }
+        check_contact(next, self.position).map_err(|reason| PlanError::Path { index, reason })?;
+        self.smoothing.push(next)?;
+        self.index = index.checked_add(1).ok_or(PlanError::TooMany { index })?;
+        self.position = next.end(self.position);
+        self.optimal.push(next);
+        if next.stops() {
+            self.ends.push_back(index);
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), PlanError> {
+        if !self.finished {
+            self.finished = true;
+            self.smoothing.finish()?;
+            self.optimal.finish();
+            self.ends.push_back(self.index.saturating_sub(1));
+        }
+        Ok(())
+    }
+
+    fn pull(&mut self) -> Option<Piece<N>> {
+        loop {
+            self.gather();
+            let before = (self.settled, self.ends.len(), self.rested);
+            self.settle();
+            if let Some(piece) = self.hand_out() {
+                return Some(piece);
+            }
+            if before == (self.settled, self.ends.len(), self.rested) {
+                return None;
+            }
+        }
+    }
+
+    fn windows(&self) -> Option<WindowTally> {
+        Some(WindowTally {
+            stretches: self.tally.stretches,
+            yielded: self.tally.yielded,
+            ..self.optimal.tally()
+        })
+    }
+}
+
+/// Plans a whole toolpath: a loop over the streaming planner.
+///
+/// # Errors
+/// As [`MotionPlanner::push`].
+pub fn plan_with<S: WindowSolver<N>, const N: usize>(
+    solver: S,
+    path: &Toolpath<N>,
+    settings: &Settings<N>,
+) -> Result<Plan<N>, PlanError> {
+    let mut planner = TimeOptimal::with_solver(solver, path.start(), settings);
+    let mut plan = Plan::starting_at(path.start());
+    for step in path.moves() {
+        planner.push(step)?;
+        while let Some(piece) = planner.pull() {
+            plan.push(piece);
+        }
+    }
+    planner.finish()?;
+    while let Some(piece) = planner.pull() {
+        plan.push(piece);
+    }
+    Ok(plan)
+}

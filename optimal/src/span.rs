@@ -1,0 +1,188 @@
+//! Runs cut into what one window can hold, and how finely their time is cut.
+//!
+//! Source: ours. The jerk is constant over an interval, so that intervals must be short against the
+//! time in which the acceleration is built up; where a long move is travelled at constant speed they
+//! may be long. Not here: windows.
+
+use crate::runs::Run;
+use toolglide_kinematics::{Limits, Serves, Tangential, Vector};
+
+/// Longest time of a span that changes its speed, as a multiple of the interval.
+const SPAN_STEPS: f64 = 24.0;
+
+/// Fewest intervals of a span: with four it can be started and stopped at both ends.
+pub(crate) const FEWEST_STEPS: usize = 4;
+
+/// Most intervals of a span.
+pub(crate) const MOST_STEPS: usize = 60;
+
+/// Intervals of a span in the middle of a long move, and how much longer they are than elsewhere.
+const CRUISE_STEPS: usize = 6;
+const CRUISE_STRETCH: f64 = 5.0;
+
+/// Room at the ends of a long move, as a multiple of the distance to stop.
+const END_ROOM: f64 = 1.25;
+
+/// A straight piece of path with what a window must know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span<const N: usize> {
+    pub(crate) start: Vector<N>,
+    pub(crate) end: Vector<N>,
+    pub(crate) direction: Vector<N>,
+    pub(crate) length: f64,
+    pub(crate) tube: f64,
+    /// Largest radius of the ball at its end and at its start; `None` where a line was only cut.
+    pub(crate) ball_at_end: Option<f64>,
+    pub(crate) ball_at_start: f64,
+    pub(crate) feedrate: f64,
+    /// Limits along it; the velocity is the feedrate where that is lower.
+    pub(crate) limits: Tangential,
+    pub(crate) serves: Serves,
+    /// Duration of an interval, s, where it is short.
+    pub(crate) interval: f64,
+    /// Time to stop from its feedrate, s.
+    pub(crate) stop_time: f64,
+    /// Whether it lies in the middle of a long move, where few intervals are enough.
+    pub(crate) cruise: bool,
+    /// Intervals, fixed when it is first planned; 0 before.
+    pub(crate) steps: usize,
+}
+
+/// How finely time is cut, as a share of the time in which the acceleration is built up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fineness(pub(crate) f64);
+
+/// The smallest acceleration and jerk of any axis.
+pub(crate) fn weakest<const N: usize>(limits: &Limits<N>) -> (f64, f64) {
+    (limits.acceleration().min(), limits.jerk().min())
+}
+
+/// Cuts a run into spans.
+pub(crate) fn cut<const N: usize>(
+    run: &Run<N>,
+    limits: &Limits<N>,
+    fineness: Fineness,
+    mut take: impl FnMut(Span<N>),
+) {
+    let mut along = limits.along(&run.direction);
+    along.velocity = along.velocity.min(run.feedrate);
+    let (acceleration, jerk) = weakest(limits);
+    let weak = Tangential {
+        velocity: along.velocity,
+        acceleration,
+        jerk,
+    };
+    let build_up = (acceleration / jerk).min((along.velocity / jerk).sqrt());
+    let stop_time = weak.time_to_change(along.velocity);
+    // Where speed takes long to change, the intervals grow with the geometric mean of both times.
+    let interval = fineness.0 * (build_up * (0.5 * stop_time).max(build_up)).sqrt();
+    let whole = Span {
+        start: run.start,
+        end: run.end,
+        direction: run.direction,
+        length: run.length,
+        tube: run.tube,
+        ball_at_end: Some(run.balls[1]),
+        ball_at_start: run.balls[0],
+        feedrate: run.feedrate,
+        limits: along,
+        serves: run.serves,
+        interval,
+        stop_time,
+        cruise: false,
+        steps: 0,
+    };
+    let mut at = 0.0;
+    let mut part = |to: f64, cruise: bool| {
+        let last = to >= run.length;
+        let place = |along: f64| {
+            if along <= 0.0 {
+                run.start
+            } else if along >= run.length {
+                run.end
+            } else {
+                run.start + run.direction * along
+            }
+        };
+        take(Span {
+            start: place(at),
+            end: place(to),
+            length: to.min(run.length) - at,
+            ball_at_start: if at > 0.0 { run.tube } else { run.balls[0] },
+            ball_at_end: last.then_some(run.balls[1]),
+            cruise,
+            ..whole
+        });
+        at = to;
+    };
+    let room = END_ROOM * 0.5 * along.velocity * stop_time;
+    let middle = run.length - 2.0 * room;
+    let cruise_length = along.velocity * interval * CRUISE_STRETCH * steps(CRUISE_STEPS);
+    if middle > cruise_length {
+        let ends = parts(stop_time * END_ROOM, interval);
+        let middles = (middle / cruise_length).ceil();
+        for index in 1..=ends {
+            part(room * steps(index) / steps(ends), false);
+        }
+        let mut index = 1.0;
+        while index <= middles {
+            part(room + middle * index / middles, true);
+            index += 1.0;
+        }
+        for index in 1..ends {
+            let left = steps(ends - index) / steps(ends);
+            part(run.length - room * left, false);
+        }
+        part(f64::INFINITY, false);
+    } else {
+        let reach = along.reachable_within(run.length);
+        let time = 2.0 * along.time_to_change(reach) + run.length / along.velocity;
+        let least = along.velocity * interval * SPAN_STEPS;
+        let count = if run.length > least {
+            parts(time, interval).min(parts(run.length / along.velocity, interval) + 2)
+        } else {
+            1
+        };
+        for index in 1..count {
+            part(run.length * steps(index) / steps(count), false);
+        }
+        part(f64::INFINITY, false);
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "a few dozen at the most")]
+pub(crate) fn steps(count: usize) -> f64 {
+    count as f64
+}
+
+/// Spans for a stretch of a duration.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to a small range"
+)]
+fn parts(time: f64, interval: f64) -> usize {
+    (time / (interval * SPAN_STEPS)).ceil().clamp(1.0, 1e3) as usize
+}
+
+impl<const N: usize> Span<N> {
+    /// Intervals for a duration.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to a small range"
+    )]
+    pub(crate) fn steps_for(&self, time: f64) -> usize {
+        if self.cruise {
+            return CRUISE_STEPS;
+        }
+        (time / self.interval)
+            .ceil()
+            .clamp(steps(FEWEST_STEPS), steps(MOST_STEPS)) as usize
+    }
+
+    /// Whether the next span goes on along the same line.
+    pub(crate) fn goes_on(&self) -> bool {
+        self.ball_at_end.is_none()
+    }
+}
