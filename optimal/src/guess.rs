@@ -33,7 +33,7 @@ pub(crate) fn corner_speed<const N: usize>(
     (acceleration, jerk): (f64, f64),
 ) -> f64 {
     let most = span.limits.velocity.min(next.limits.velocity);
-    if span.goes_on() {
+    if span.goes_on {
         return most;
     }
     let cosine = span.direction.dot(&next.direction).clamp(-1.0, 1.0);

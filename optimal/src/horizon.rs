@@ -266,8 +266,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 start: span.start,
                 end: span.end,
                 tolerance: span.tube,
-                corner_tolerance: next
-                    .and_then(|next| span.ball_at_end.map(|ball| ball.min(next.ball_at_start))),
+                corner_tolerance: next.map(|next| span.balls[1].min(next.balls[0])),
                 feedrate: span.feedrate,
                 steps: span.steps,
             });

@@ -12,7 +12,7 @@ pub(crate) fn on_one_line<'a, const N: usize>(spans: impl Iterator<Item = &'a Sp
     let mut count = 0;
     for span in spans {
         count += 1;
-        if !span.goes_on() {
+        if !span.goes_on {
             break;
         }
     }

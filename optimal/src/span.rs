@@ -31,9 +31,10 @@ pub(crate) struct Span<const N: usize> {
     pub(crate) direction: Vector<N>,
     pub(crate) length: f64,
     pub(crate) tube: f64,
-    /// Largest radius of the ball at its end and at its start; `None` where a line was only cut.
-    pub(crate) ball_at_end: Option<f64>,
-    pub(crate) ball_at_start: f64,
+    /// Largest radius of the balls at its start and at its end, mm.
+    pub(crate) balls: [f64; 2],
+    /// Whether the next span goes on along the same line.
+    pub(crate) goes_on: bool,
     pub(crate) feedrate: f64,
     /// Limits along it; the velocity is the feedrate where that is lower.
     pub(crate) limits: Tangential,
@@ -82,8 +83,8 @@ pub(crate) fn cut<const N: usize>(
         direction: run.direction,
         length: run.length,
         tube: run.tube,
-        ball_at_end: Some(run.balls[1]),
-        ball_at_start: run.balls[0],
+        balls: run.balls,
+        goes_on: false,
         feedrate: run.feedrate,
         limits: along,
         serves: run.serves,
@@ -108,8 +109,12 @@ pub(crate) fn cut<const N: usize>(
             start: place(at),
             end: place(to),
             length: to.min(run.length) - at,
-            ball_at_start: if at > 0.0 { run.tube } else { run.balls[0] },
-            ball_at_end: last.then_some(run.balls[1]),
+            // Where a line is only cut, the ball costs nothing: when it is passed is free.
+            balls: [
+                if at > 0.0 { run.tube } else { run.balls[0] },
+                if last { run.balls[1] } else { run.tube },
+            ],
+            goes_on: !last,
             cruise,
             ..whole
         });
@@ -179,10 +184,5 @@ impl<const N: usize> Span<N> {
         (time / self.interval)
             .ceil()
             .clamp(steps(FEWEST_STEPS), steps(MOST_STEPS)) as usize
-    }
-
-    /// Whether the next span goes on along the same line.
-    pub(crate) fn goes_on(&self) -> bool {
-        self.ball_at_end.is_none()
     }
 }

@@ -42,7 +42,7 @@ impl Rows {
 
 /// Finds motion by a general conic solver.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Conic {
+pub(crate) struct Conic {
     /// Windows solved so far that found no motion.
     pub failures: u32,
     /// Conic programs solved so far.
