@@ -5,10 +5,11 @@
 use crate::block::{AXES, Block, OFFSETS};
 use crate::codes::{Distance, Motion, Plane};
 use crate::error::Fault;
-use crate::modal::{Modal, whole};
+use crate::lower::Lowering;
+use crate::machining_error::MachiningError;
+use crate::modal::whole;
 use crate::place::Span;
 use crate::reason::Reason;
-use crate::settings::Settings;
 use crate::units::within_reach;
 use crate::uses::motion_span;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
@@ -23,7 +24,7 @@ const MOST_TURNS: u32 = 1_000_000;
 
 impl Plane {
     /// Its axes; a positive turn goes from the first to the second.
-    fn axes(self) -> [usize; 2] {
+    pub(crate) fn axes(self) -> [usize; 2] {
         match self {
             Self::Xy => [0, 1],
             Self::Zx => [2, 0],
@@ -32,7 +33,7 @@ impl Plane {
     }
 
     /// The axis outside it.
-    fn normal(self) -> usize {
+    pub(crate) fn normal(self) -> usize {
         match self {
             Self::Xy => 2,
             Self::Zx => 1,
@@ -68,16 +69,16 @@ impl Plane {
 /// The arc of a block, and the word to blame for its shape.
 pub(crate) fn arc(
     block: &Block,
-    modal: &Modal,
-    settings: &Settings,
+    state: &Lowering,
     motion: Motion,
     start: Vector<3>,
     end: Vector<3>,
 ) -> Result<Arc<3>, Fault> {
+    let modal = &state.modal;
     let plane = modal.plane;
     let axes = plane.axes();
     for axis in axes {
-        if !settings.axes[axis] {
+        if !state.settings.axes[axis] {
             let letter = char::from(AXES[axis]);
             return Err(Fault::new(
                 motion_span(block),
@@ -86,7 +87,12 @@ pub(crate) fn arc(
         }
     }
     let counter_clockwise = motion == Motion::CounterClockwise;
-    let (center, blamed) = center(block, modal, counter_clockwise, start, end)?;
+    let degrees = state.offsets.rotation();
+    if degrees != 0.0 && plane != Plane::Xy {
+        let reason = MachiningError::RotatedArc { degrees };
+        return Err(Fault::new(motion_span(block), reason.into()));
+    }
+    let (center, blamed) = center(block, state, counter_clockwise, start, end)?;
     let turns = whole(block, b'P', "number of turns", 1, MOST_TURNS)?.unwrap_or(1);
     Arc::about(start, end, center, axes, counter_clockwise, turns - 1)
         .map_err(|error| Fault::new(blamed, Reason::Path(error)))
@@ -94,11 +100,12 @@ pub(crate) fn arc(
 
 fn center(
     block: &Block,
-    modal: &Modal,
+    state: &Lowering,
     counter_clockwise: bool,
     start: Vector<3>,
     end: Vector<3>,
 ) -> Result<(Vector<3>, Span), Fault> {
+    let modal = &state.modal;
     let plane = modal.plane;
     let outside = OFFSETS[plane.normal()];
     if block.has(outside) {
@@ -131,17 +138,20 @@ fn center(
         }
         (None, Some(offset)) => {
             let span = block.span(offset);
-            center_by_offsets(block, modal, span, start).map(|center| (center, span))
+            center_by_offsets(block, state, span, start).map(|center| (center, span))
         }
     }
 }
 
 fn center_by_offsets(
     block: &Block,
-    modal: &Modal,
+    state: &Lowering,
     blamed: Span,
     start: Vector<3>,
 ) -> Result<Vector<3>, Fault> {
+    let modal = &state.modal;
+    // Offsets are written in the coordinates of the program.
+    let start = state.offsets.to_program(start);
     let mut center = start;
     for axis in modal.plane.axes() {
         let letter = OFFSETS[axis];
@@ -162,7 +172,7 @@ fn center_by_offsets(
             (None, Distance::Incremental) => {}
         }
     }
-    Ok(center)
+    Ok(state.offsets.to_machine(center))
 }
 
 /// The centre from a radius: of the two circles through both ends, the one that gives the shorter

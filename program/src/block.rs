@@ -3,11 +3,12 @@
 //! Source: the modal groups of RS274/NGC. Not here: the modal state, and which words a code needs.
 
 use crate::codes::{
-    Code, Distance, FeedMode, Group, Meaning, Motion, PathControl, Plane, Stop, Unread,
-    miscellaneous, preparatory, unread_letter,
+    Code, Distance, FeedMode, Group, Meaning, Motion, Once, PathControl, Plane, Saving, Side, Stop,
+    ToolLength, Unread, miscellaneous, preparatory, unread_letter,
 };
 use crate::error::{Fault, Notice, Remark};
-use crate::lexer::{Lexer, Word};
+use crate::lexer::{Assignment, Lexer, Word};
+use crate::parameters::Values;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
@@ -19,8 +20,22 @@ pub(crate) const AXES: [u8; 3] = *b"XYZ";
 /// Letters of the offsets of a centre, in the order of coordinates.
 pub(crate) const OFFSETS: [u8; 3] = *b"IJK";
 
-/// Number of letters.
-const LETTERS: usize = 26;
+/// Letters that move something or name a point: those of the axes, and distance and angle.
+pub(crate) const POINT: [u8; 8] = *b"XYZ@^ABC";
+
+/// Letters, `@`, `^` and `$`.
+const LETTERS: usize = 29;
+
+/// Groups that need nothing beyond the modal state and a motion.
+const PLAIN: u32 = 1 << Group::Motion as u32
+    | 1 << Group::Distance as u32
+    | 1 << Group::ArcDistance as u32
+    | 1 << Group::FeedMode as u32
+    | 1 << Group::PathControl as u32
+    | 1 << Group::Units as u32;
+
+/// Codes of one letter, by ten times their number.
+const CODES: usize = 10_000;
 
 /// The words of one line.
 ///
@@ -35,8 +50,22 @@ pub(crate) struct Block {
     /// Code that strict reading refuses, with its reason; lenient reading skips it.
     foreign: Option<(Code, Fault)>,
     words: u32,
+    /// Parameters that the line sets once it is read.
+    pub(crate) assignments: Vec<Assignment>,
+    /// Whether the machine has rotary axes.
+    pub(crate) rotary: bool,
+    /// How often each code was met, by letter and ten times its number.
+    counts: Vec<u64>,
     pub(crate) motion: Option<Motion>,
-    pub(crate) dwell: bool,
+    pub(crate) end_of_nurbs: bool,
+    pub(crate) once: Option<Once>,
+    pub(crate) side: Option<Side>,
+    pub(crate) tool_length: Option<ToolLength>,
+    pub(crate) coordinates: Option<u8>,
+    pub(crate) return_to_start: Option<bool>,
+    pub(crate) tool_change: bool,
+    pub(crate) saving: Option<Saving>,
+    pub(crate) outside: bool,
     pub(crate) plane: Option<Plane>,
     pub(crate) units: Option<Units>,
     pub(crate) distance: Option<Distance>,
@@ -56,8 +85,19 @@ impl Block {
             takers: [(Code::new(b'G', 0), Span::default()); Group::COUNT],
             foreign: None,
             words: 0,
+            assignments: Vec::new(),
+            rotary: false,
+            counts: vec![0; 2 * CODES],
             motion: None,
-            dwell: false,
+            end_of_nurbs: false,
+            once: None,
+            side: None,
+            tool_length: None,
+            coordinates: None,
+            return_to_start: None,
+            tool_change: false,
+            saving: None,
+            outside: false,
             plane: None,
             units: None,
             distance: None,
@@ -73,8 +113,17 @@ impl Block {
         self.taken = 0;
         self.foreign = None;
         self.words = 0;
+        self.assignments.clear();
         self.motion = None;
-        self.dwell = false;
+        self.end_of_nurbs = false;
+        self.once = None;
+        self.side = None;
+        self.tool_length = None;
+        self.coordinates = None;
+        self.return_to_start = None;
+        self.tool_change = false;
+        self.saving = None;
+        self.outside = false;
         self.plane = None;
         self.units = None;
         self.distance = None;
@@ -88,11 +137,27 @@ impl Block {
     pub(crate) fn read(
         &mut self,
         line: &[u8],
+        values: &dyn Values,
         settings: &Settings,
         remarks: &mut Vec<Remark>,
     ) -> Result<(), Fault> {
         self.clear();
-        let mut lexer = Lexer::new(line);
+        let mut assignments = std::mem::take(&mut self.assignments);
+        let outcome = self.words_of(line, values, settings, remarks, &mut assignments);
+        self.assignments = assignments;
+        outcome?;
+        self.refuse_motion_beside_foreign()
+    }
+
+    fn words_of(
+        &mut self,
+        line: &[u8],
+        values: &dyn Values,
+        settings: &Settings,
+        remarks: &mut Vec<Remark>,
+        assignments: &mut Vec<Assignment>,
+    ) -> Result<(), Fault> {
+        let mut lexer = Lexer::new(line, values, assignments);
         while let Some(word) = lexer.word()? {
             self.words += 1;
             match word.letter {
@@ -101,12 +166,35 @@ impl Block {
                 _ => self.value(word, settings, remarks)?,
             }
         }
-        self.refuse_motion_beside_foreign()
+        Ok(())
     }
 
-    /// Number of words, line number included.
-    pub(crate) fn words(&self) -> u32 {
-        self.words
+    /// Whether the line says nothing.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.words == 0 && self.assignments.is_empty()
+    }
+
+    /// Codes met in all lines so far, in order, and how often.
+    pub(crate) fn codes(&self) -> impl Iterator<Item = (Code, u64)> + '_ {
+        let letters = [b'G', b'M'];
+        let count = move |letter: usize, tenths: u16| {
+            let count = self.counts[letter * CODES + usize::from(tenths)];
+            (count > 0).then(|| (Code::new(letters[letter], tenths), count))
+        };
+        (0..2).flat_map(move |letter| (0..10_000).filter_map(move |tenths| count(letter, tenths)))
+    }
+
+    fn count(&mut self, letter: usize, code: Code) {
+        if let Some(tenths) = code.tenths()
+            && let Some(count) = self.counts.get_mut(letter * CODES + usize::from(tenths))
+        {
+            *count += 1;
+        }
+    }
+
+    /// Whether the block sets nothing up but what the modal state takes.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.taken & !PLAIN == 0 && !self.end_of_nurbs
     }
 
     /// Whether a word with `letter` stands in the block.
@@ -153,7 +241,9 @@ impl Block {
         if axis.is_some_and(|axis| !settings.axes[axis]) {
             return Err(Fault::new(word.span, Reason::NoSuchAxis { letter }));
         }
-        if let Some(unread) = unread_letter(word.letter) {
+        if let Some(unread) = unread_letter(word.letter)
+            && !(self.rotary && matches!(word.letter, b'A'..=b'C'))
+        {
             let fault = unread_fault(Code::letter(word.letter), word.span, unread);
             return skip(fault, unread, settings, remarks);
         }
@@ -175,6 +265,7 @@ impl Block {
         remarks: &mut Vec<Remark>,
     ) -> Result<(), Fault> {
         let code = code_of(word, 1, "a number from 0 to 999 with one decimal at most")?;
+        self.count(0, code);
         match preparatory(code.tenths().unwrap_or_default()) {
             Ok((Group::Motion, meaning)) => self.take_motion(meaning, code, word.span),
             Ok((group, meaning)) => {
@@ -196,6 +287,7 @@ impl Block {
         remarks: &mut Vec<Remark>,
     ) -> Result<(), Fault> {
         let code = code_of(word, 10, "a whole number from 0 to 999")?;
+        self.count(1, code);
         match miscellaneous(code.tenths().unwrap_or_default()) {
             Ok((group, meaning)) => {
                 self.take(group, code, word.span)?;
@@ -249,7 +341,18 @@ impl Block {
     fn set(&mut self, meaning: Meaning) {
         match meaning {
             Meaning::Motion(motion) => self.motion = Some(motion),
-            Meaning::Dwell => self.dwell = true,
+            Meaning::EndOfNurbs => {
+                self.motion = Some(Motion::Off);
+                self.end_of_nurbs = true;
+            }
+            Meaning::Once(once) => self.once = Some(once),
+            Meaning::Side(side) => self.side = Some(side),
+            Meaning::ToolLength(length) => self.tool_length = Some(length),
+            Meaning::Coordinates(system) => self.coordinates = Some(system),
+            Meaning::ReturnToStart(back) => self.return_to_start = Some(back),
+            Meaning::ToolChange => self.tool_change = true,
+            Meaning::Saving(saving) => self.saving = Some(saving),
+            Meaning::Outside => self.outside = true,
             Meaning::Plane(plane) => self.plane = Some(plane),
             Meaning::Inch => self.units = Some(Units::Inch),
             Meaning::Millimeter => self.units = Some(Units::Millimeter),
@@ -265,9 +368,11 @@ impl Block {
     /// Words of a code that is skipped must not be taken for a motion: without a motion word there
     /// is no telling whose they are.
     fn refuse_motion_beside_foreign(&mut self) -> Result<(), Fault> {
-        let geometry = self.first_of(&AXES).or(self.first_of(b"IJKR"));
+        let geometry = self.first_of(&POINT).or(self.first_of(b"IJKR"));
+        let taken = self.once.is_some() || self.tool_length.is_some();
         if geometry.is_some()
             && self.motion.is_none()
+            && !taken
             && let Some((_, fault)) = self.foreign.take()
         {
             return Err(fault);
@@ -278,7 +383,12 @@ impl Block {
 
 /// Letters come from the lexer in upper case.
 fn index(letter: u8) -> usize {
-    usize::from(letter.wrapping_sub(b'A')).min(LETTERS - 1)
+    match letter {
+        b'@' => LETTERS - 3,
+        b'^' => LETTERS - 2,
+        b'$' => LETTERS - 1,
+        _ => usize::from(letter.wrapping_sub(b'A')).min(LETTERS - 1),
+    }
 }
 
 fn bit(letter: u8) -> u32 {
@@ -301,6 +411,10 @@ fn code_of(word: Word, step: u16, bound: &'static str) -> Result<Code, Fault> {
 fn unread_fault(code: Code, span: Span, unread: Unread) -> Fault {
     let reason = match unread {
         Unread::Known(what) | Unread::Harmless(what) => Reason::NotSupported { code, what },
+        Unread::Carried => Reason::NotSupported {
+            code,
+            what: "a function of another machine",
+        },
         Unread::Unknown | Unread::UnknownHarmless => Reason::UnknownCode { code },
     };
     Fault::new(span, reason)
@@ -314,7 +428,7 @@ fn skip(
     remarks: &mut Vec<Remark>,
 ) -> Result<(), Fault> {
     let harmless = matches!(unread, Unread::Harmless(_) | Unread::UnknownHarmless);
-    if settings.lenient && harmless {
+    if settings.lenient && harmless || unread == Unread::Carried {
         remarks.push((fault.span, Notice::Skipped(fault.reason)));
         Ok(())
     } else {

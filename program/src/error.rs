@@ -69,6 +69,12 @@ pub enum Notice {
     /// A word was skipped that would have been refused by strict reading; no axis depends on it.
     #[error("skipped: {0}")]
     Skipped(Reason),
+    /// The length or the radius of a tool is asked for, but there is no tool table.
+    #[error("there is no tool table, so tool {tool} counts as a point at the spindle")]
+    NoToolTable {
+        /// The tool.
+        tool: u32,
+    },
     /// `F` stands in the block that changes the units, and is read in those before it.
     #[error(
         "F is read in {former} a minute, because it takes effect before the units of its block"

@@ -1,24 +1,15 @@
 //! One line of a program into words: a letter and a number, with their place.
 //!
-//! Source: RS274/NGC, sections on the format of a line. Parameters and expressions would stand
-//! where a number stands; they are refused by name. Not here: what a word means.
+//! Source: RS274/NGC, sections on the format of a line. Where a number stands, a parameter or an
+//! expression may stand too. Not here: what a word means, and lines with an O word.
 
+use crate::arithmetic_error::ArithmeticError;
 use crate::error::Fault;
+use crate::expression::{Evaluator, Parameter};
+use crate::number::number;
+use crate::parameters::Values;
 use crate::place::Span;
 use crate::reason::Reason;
-
-/// Whole numbers up to this are floats exactly.
-const EXACT_MANTISSA: u64 = 1 << 53;
-
-/// Powers of ten that are floats exactly; the quotient of two exact floats is rounded once, so a
-/// short number is read without the general algorithm and to the same bit.
-const EXACT_POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
-
-/// Digits that a mantissa of 64 bits holds whatever they are.
-const SAFE_DIGITS: u32 = 19;
 
 /// A letter in upper case and the number after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,16 +19,35 @@ pub(crate) struct Word {
     pub(crate) span: Span,
 }
 
-/// Takes the words of a line one after the other.
-#[derive(Debug)]
-pub(crate) struct Lexer<'line> {
-    line: &'line [u8],
-    at: usize,
+/// A parameter that gets a value once its line is read.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Assignment {
+    pub(crate) parameter: Parameter,
+    pub(crate) value: f64,
+    pub(crate) span: Span,
 }
 
-impl<'line> Lexer<'line> {
-    pub(crate) fn new(line: &'line [u8]) -> Self {
-        Self { line, at: 0 }
+/// Takes the words of a line one after the other.
+pub(crate) struct Lexer<'a> {
+    line: &'a [u8],
+    at: usize,
+    values: &'a dyn Values,
+    assignments: &'a mut Vec<Assignment>,
+}
+
+impl<'a> Lexer<'a> {
+    /// A lexer of `line`; what it assigns is appended to `assignments`.
+    pub(crate) fn new(
+        line: &'a [u8],
+        values: &'a dyn Values,
+        assignments: &'a mut Vec<Assignment>,
+    ) -> Self {
+        Self {
+            line,
+            at: 0,
+            values,
+            assignments,
+        }
     }
 
     /// The next word, or none at the end of the line.
@@ -48,7 +58,10 @@ impl<'line> Lexer<'line> {
             };
             match byte {
                 b' ' | b'\t' => self.at += 1,
-                b'A'..=b'Z' | b'a'..=b'z' => return self.letter(byte).map(Some),
+                b'A'..=b'Z' | b'a'..=b'z' | b'@' | b'^' | b'$' => {
+                    return self.letter(byte).map(Some);
+                }
+                b'#' => self.assignment()?,
                 b'(' => self.comment()?,
                 b';' => {
                     check_text(self.line, self.at)?;
@@ -64,9 +77,20 @@ impl<'line> Lexer<'line> {
         self.at += 1;
         let letter = byte.to_ascii_uppercase();
         if letter == b'O' {
-            return Err(self.syntax(start, "O words (subroutines and loops)"));
+            return Err(self.syntax(start, "O words behind other words"));
         }
-        let value = self.number(char::from(letter), start)?;
+        let value = match number(self.line, self.at) {
+            Ok((value, end)) => {
+                self.at = end;
+                if !value.is_finite() {
+                    let span = Span::new(start, end);
+                    let letter = char::from(letter);
+                    return Err(Fault::new(span, Reason::NumberOutOfRange { letter }));
+                }
+                value
+            }
+            Err(at) => self.value(char::from(letter), start, at)?,
+        };
         Ok(Word {
             letter,
             value,
@@ -74,71 +98,42 @@ impl<'line> Lexer<'line> {
         })
     }
 
-    /// A decimal number, blanks inside it allowed; `start` is where its letter stands.
-    fn number(&mut self, letter: char, start: usize) -> Result<f64, Fault> {
-        let mut mantissa = 0_u64;
-        let mut digits = 0_u32;
-        let mut decimals = 0_usize;
-        let mut point = false;
-        let mut negative = false;
-        let mut sign_allowed = true;
-        let mut end = self.at;
-        let first = self.at;
-        while let Some(&byte) = self.line.get(self.at) {
-            match byte {
-                b'0'..=b'9' => {
-                    if digits < SAFE_DIGITS {
-                        mantissa = mantissa * 10 + u64::from(byte - b'0');
-                    }
-                    digits += 1;
-                    decimals += usize::from(point);
-                    sign_allowed = false;
-                }
-                b'.' if !point => {
-                    point = true;
-                    sign_allowed = false;
-                }
-                b'+' | b'-' if sign_allowed => {
-                    negative = byte == b'-';
-                    sign_allowed = false;
-                }
-                b' ' | b'\t' => {
-                    self.at += 1;
-                    continue;
-                }
-                _ => break,
+    /// What stands in place of a number; `met` is where the search for digits ended.
+    fn value(&mut self, letter: char, start: usize, met: usize) -> Result<f64, Fault> {
+        let mut evaluator = Evaluator::new(self.line, self.at, self.values);
+        match self.line.get(met) {
+            Some(b'#' | b'[') => {}
+            Some(&byte) if is_control(byte) => return Err(control(met, byte)),
+            _ if evaluator.function_stands(met) => {}
+            _ => {
+                let span = Span::new(start, start + 1);
+                return Err(Fault::new(span, Reason::NumberMissing { letter }));
             }
-            self.at += 1;
-            end = self.at;
         }
-        if digits == 0 {
-            return Err(self.no_number(letter, start));
-        }
-        self.at = end;
-        let magnitude = match EXACT_POWERS.get(decimals) {
-            // Below 2^53 both conversions and the division are correctly rounded.
-            Some(power) if digits <= SAFE_DIGITS && mantissa <= EXACT_MANTISSA => {
-                mantissa as f64 / power
-            }
-            _ => long_number(&self.line[first..end]),
-        };
-        if !magnitude.is_finite() {
-            let span = Span::new(start, end);
-            return Err(Fault::new(span, Reason::NumberOutOfRange { letter }));
-        }
-        Ok(if negative { -magnitude } else { magnitude })
+        let value = evaluator.value()?;
+        self.at = evaluator.at;
+        Ok(value)
     }
 
-    fn no_number(&mut self, letter: char, start: usize) -> Fault {
-        match self.line.get(self.at) {
-            Some(b'#') => self.syntax(self.at, "parameters"),
-            Some(b'[') => self.syntax(self.at, "expressions"),
-            Some(&byte) if is_control(byte) => control(self.at, byte),
-            _ => Fault::new(
-                Span::new(start, start + 1),
-                Reason::NumberMissing { letter },
-            ),
+    /// A parameter with the value that it gets.
+    fn assignment(&mut self) -> Result<(), Fault> {
+        let start = self.at;
+        let mut evaluator = Evaluator::new(self.line, start, self.values);
+        let parameter = evaluator.parameter()?;
+        evaluator.skip_blanks();
+        if evaluator.peek() != Some(b'=') {
+            let span = Span::new(start, evaluator.at);
+            return Err(Fault::new(span, ArithmeticError::NotAssigned.into()));
         }
+        evaluator.at += 1;
+        let value = evaluator.value()?;
+        self.at = evaluator.at;
+        self.assignments.push(Assignment {
+            parameter,
+            value,
+            span: Span::new(start, self.at),
+        });
+        Ok(())
     }
 
     /// Skips a comment in brackets.
@@ -169,10 +164,6 @@ impl<'line> Lexer<'line> {
         let start = self.at;
         let one = Span::new(start, start + 1);
         match byte {
-            b'#' => self.syntax(start, "parameters"),
-            b'[' | b']' => self.syntax(start, "expressions"),
-            b'@' | b'^' => self.syntax(start, "polar coordinates"),
-            b'$' => self.syntax(start, "spindle numbers"),
             b'%' => Fault::new(one, Reason::PercentNotAlone),
             b')' => Fault::new(one, Reason::CommentNotOpened),
             b'0'..=b'9' | b'+' | b'-' | b'.' => {
@@ -209,17 +200,6 @@ impl<'line> Lexer<'line> {
     }
 }
 
-/// A number with more digits than the short way takes.
-fn long_number(text: &[u8]) -> f64 {
-    let digits: String = text
-        .iter()
-        .filter(|byte| matches!(byte, b'0'..=b'9' | b'.'))
-        .map(|&byte| char::from(byte))
-        .collect();
-    // Digits and one point are always a number, so that the other branch is never taken.
-    digits.parse().unwrap_or(f64::INFINITY)
-}
-
 /// Whether a byte stands in no text; a tab does.
 fn is_control(byte: u8) -> bool {
     byte < b' ' && byte != b'\t' || byte == 0x7f
@@ -240,9 +220,13 @@ pub(crate) fn check_text(line: &[u8], start: usize) -> Result<(), Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameters::Parameters;
 
     fn words(line: &str) -> Result<Vec<(char, f64)>, Fault> {
-        let mut lexer = Lexer::new(line.as_bytes());
+        let mut assignments = Vec::new();
+        let mut parameters = Parameters::new();
+        parameters.put(5, 2.5);
+        let mut lexer = Lexer::new(line.as_bytes(), &parameters, &mut assignments);
         let mut found = Vec::new();
         while let Some(word) = lexer.word()? {
             found.push((char::from(word.letter), word.value));
@@ -330,26 +314,15 @@ mod tests {
     }
 
     #[test]
-    fn the_parts_of_the_language_not_read_are_named() {
-        let refused = |what| Reason::SyntaxNotSupported { what };
-        assert_eq!(
-            fault("G0 Z#<safe>"),
-            (4, 11, refused("parameters")),
-            "value"
-        );
-        assert_eq!(fault("#1=2"), (0, 4, refused("parameters")), "assignment");
-        assert_eq!(
-            fault("X[1+2]"),
-            (1, 6, refused("expressions")),
-            "expression"
-        );
-        assert_eq!(
-            fault("g91 g1 @-.1 ^4"),
-            (7, 11, refused("polar coordinates")),
-            "polar"
-        );
-        let subroutine = refused("O words (subroutines and loops)");
-        assert_eq!(fault("o100 sub"), (0, 4, subroutine), "subroutine");
+    fn values_stand_where_numbers_stand() {
+        let expected = vec![('X', 2.5), ('Y', -2.5), ('Z', 3.0), ('I', 2.0), ('J', -1.0)];
+        let line = "X#5 Y-#5 Z[1 + 2] Isqrt[4] j-abs[-1]";
+        assert_eq!(words(line), Ok(expected), "values");
+        assert_eq!(words("#1 = 2 X1"), Ok(vec![('X', 1.0)]), "assignment");
+        let (start, end, reason) = fault("G1 #1 2");
+        assert_eq!((start, end), (3, 7), "no sign of equality");
+        let expected = Reason::Arithmetic(ArithmeticError::NotAssigned);
+        assert_eq!(reason, expected, "no sign of equality");
     }
 
     #[test]

@@ -1,15 +1,25 @@
 //! Blocks into moves.
 //!
-//! Source: `G0` to `G4` and `M0` of RS274/NGC. Not here: the modal state and the shape of arcs.
+//! Source: the order of execution of RS274/NGC. The position is kept twice: where the program says
+//! the tool is, and where that is on the machine. Not here: what each code does in detail.
 
 use crate::arcs::arc;
-use crate::block::{AXES, Block};
-use crate::codes::{Distance, FeedMode, Group, Motion, PathControl, Stop};
+use crate::block::Block;
+use crate::codes::{FeedMode, Group, Motion, Once, PathControl, Saving, Stop};
+use crate::compensation::Compensation;
+use crate::cycles::CycleState;
 use crate::error::{Fault, Remark};
+use crate::lexer::Assignment;
+use crate::machining_error::MachiningError;
 use crate::modal::{Modal, not_negative};
+use crate::offsets::Offsets;
+use crate::parameters::Parameters;
+use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
-use crate::units::{inverse_time, within_reach};
+use crate::splines::Nurbs;
+use crate::tools::ToolTable;
+use crate::units::inverse_time;
 use crate::uses::{check, motion_of, motion_span};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Feedrate, Move, Vector};
@@ -17,12 +27,37 @@ use toolglide_kinematics::{Feedrate, Move, Vector};
 /// Longest dwell, s: about eleven days, more than any process waits.
 const LONGEST_DWELL: f64 = 1e6;
 
+/// Moves that one block may make: more than any spline or cycle of a real program, and a bound on
+/// what waits for the planner.
+pub(crate) const MOST_MOVES: u32 = 100_000;
+
 /// Turns blocks into moves, one after the other.
 #[derive(Debug)]
 pub(crate) struct Lowering {
     pub(crate) settings: Settings,
     pub(crate) modal: Modal,
+    pub(crate) parameters: Parameters,
+    pub(crate) offsets: Offsets,
+    pub(crate) tools: ToolTable,
+    /// The tool in the spindle.
+    pub(crate) loaded: u32,
+    /// Where the program is, in its own coordinates, mm.
+    pub(crate) program: Vector<3>,
+    /// Where that is on the machine, mm.
     pub(crate) position: Vector<3>,
+    /// Rotary axes A, B and C, degrees.
+    pub(crate) rotary: [f64; 3],
+    pub(crate) compensation: Option<Compensation>,
+    pub(crate) nurbs: Option<Nurbs>,
+    /// What the next spline of two offsets continues, if it does.
+    pub(crate) spline_end: Option<[f64; 2]>,
+    pub(crate) cycle: Option<CycleState>,
+    /// Modal states saved by the main program and by each subroutine that runs, and whether they
+    /// come back when it ends.
+    pub(crate) saved: Vec<Option<(Modal, bool)>>,
+    pub(crate) line: u32,
+    /// Whether it was said that words of an extruder are skipped.
+    extruder_noted: bool,
 }
 
 impl Lowering {
@@ -30,7 +65,43 @@ impl Lowering {
         Self {
             settings,
             modal: Modal::new(&settings),
+            parameters: Parameters::new(),
+            offsets: Offsets::new(),
+            tools: ToolTable::new(),
+            loaded: 0,
+            program: settings.start,
             position: settings.start,
+            rotary: [0.0; 3],
+            compensation: None,
+            nurbs: None,
+            spline_end: None,
+            cycle: None,
+            saved: vec![None],
+            line: 0,
+            extruder_noted: false,
+        }
+    }
+
+    /// Gives parameters the values that a line has for them.
+    pub(crate) fn assign(&mut self, assignments: &mut Vec<Assignment>) -> Result<(), Fault> {
+        for assignment in assignments.drain(..) {
+            self.set_parameter(&assignment)?;
+        }
+        Ok(())
+    }
+
+    /// Begins a subroutine.
+    pub(crate) fn enter(&mut self, arguments: &[f64]) {
+        self.parameters.enter(arguments);
+        self.saved.push(None);
+    }
+
+    /// Ends a subroutine, with the value that it returns.
+    pub(crate) fn leave(&mut self, value: Option<f64>) {
+        self.parameters.leave();
+        self.return_value(value);
+        if let Some(Some((modal, true))) = self.saved.pop() {
+            self.modal = modal;
         }
     }
 
@@ -42,30 +113,76 @@ impl Lowering {
         moves: &mut VecDeque<Move<3>>,
         remarks: &mut Vec<Remark>,
     ) -> Result<bool, Fault> {
+        self.line = line;
         let motion = motion_of(block, self.modal.motion)?;
-        check(block, motion)?;
+        check(
+            block,
+            motion,
+            &self.settings,
+            &mut self.extruder_noted,
+            remarks,
+        )?;
+        self.check_open_spline(block, motion)?;
+        let former = self.modal.motion;
         self.modal.take(block, &self.settings, remarks)?;
-        if block.dwell {
-            moves.push_back(self.dwell(block)?.from_line(line));
+        if block.is_plain() {
+            // Most blocks of long programs are motion alone.
+            if let Some(motion) = motion {
+                self.motion(block, motion, former, moves)?;
+            }
+            return Ok(false);
+        }
+        if block.tool_change {
+            self.loaded = self.modal.tool;
+        }
+        self.set_up(block, remarks, moves)?;
+        if block.once == Some(Once::Dwell) {
+            let rest = self.dwell(block)?.from_line(line);
+            self.emit(rest, moves)?;
+        }
+        self.once(block, moves)?;
+        if block.end_of_nurbs {
+            self.end_nurbs(block, moves)?;
         }
         if let Some(motion) = motion {
-            let (step, end) = self.step(block, motion)?;
-            let step = step.from_line(line);
-            self.position = end;
-            moves.push_back(match self.modal.path_control {
-                PathControl::ExactStop => step.with_exact_stop(),
-                PathControl::Blend => step,
-            });
+            self.motion(block, motion, former, moves)?;
+        }
+        if let Some(saving) = block.saving {
+            self.save(saving, block)?;
         }
         match block.stop {
             Some(Stop::Pause) => {
-                let rest = Move::dwell(0.0, self.modal.tolerance)
-                    .map_err(|error| Fault::new(motion_span(block), Reason::Path(error)))?;
-                moves.push_back(rest.from_line(line));
+                let rest = self.rest(0.0, motion_span(block))?;
+                self.emit(rest, moves)?;
                 Ok(false)
             }
             Some(Stop::End) => Ok(true),
             None => Ok(false),
+        }
+    }
+
+    /// Makes the moves that wait for one that never comes.
+    pub(crate) fn finish(&mut self, moves: &mut VecDeque<Move<3>>) {
+        if let Some(compensation) = &mut self.compensation {
+            compensation.flush(moves);
+        }
+    }
+
+    fn motion(
+        &mut self,
+        block: &Block,
+        motion: Motion,
+        former: Motion,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        match motion {
+            Motion::Cycle(_) => self.cycle(block, motion, former, moves),
+            Motion::Cubic | Motion::Quadratic => self.spline(block, motion, moves),
+            Motion::Nurbs => self.control_point(block),
+            _ => {
+                self.spline_end = None;
+                self.step(block, motion, moves)
+            }
         }
     }
 
@@ -76,60 +193,101 @@ impl Lowering {
                 .unwrap_or((Motion::Off.code(), motion_span(block)));
             return Err(Fault::new(span, Reason::WordMissing { code, letter: 'P' }));
         };
-        let at = |reason| Fault::new(block.span(b'P'), reason);
+        self.rest(duration, block.span(b'P'))
+    }
+
+    /// A dwell of a duration, s, that `span` asks for.
+    pub(crate) fn rest(&self, duration: f64, span: Span) -> Result<Move<3>, Fault> {
         if duration > LONGEST_DWELL {
-            return Err(at(Reason::DwellTooLong {
-                value: duration,
-                bound: LONGEST_DWELL,
-            }));
+            let (value, bound) = (duration, LONGEST_DWELL);
+            return Err(Fault::new(span, Reason::DwellTooLong { value, bound }));
         }
-        Move::dwell(duration, self.modal.tolerance).map_err(|error| at(Reason::Path(error)))
+        Move::dwell(duration, self.modal.tolerance)
+            .map(|rest| rest.from_line(self.line))
+            .map_err(|error| Fault::new(span, Reason::Path(error)))
     }
 
-    /// The move of a block, and where it ends.
-    fn step(&self, block: &Block, motion: Motion) -> Result<(Move<3>, Vector<3>), Fault> {
+    /// A straight or circular move.
+    fn step(
+        &mut self,
+        block: &Block,
+        motion: Motion,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
         let end = self.end(block)?;
+        let start = self.position;
+        let there = self.offsets.to_machine(end);
         let tolerance = self.modal.tolerance;
-        if motion.is_arc() {
-            let arc = arc(
-                block,
-                &self.modal,
-                &self.settings,
-                motion,
-                self.position,
-                end,
-            )?;
-            let feedrate = self.feedrate(block, arc.length())?;
-            return Ok((Move::arc(arc, feedrate, tolerance), end));
-        }
-        let feedrate = match motion {
-            Motion::Rapid => Feedrate::RAPID,
-            _ => self.feedrate(block, (end - self.position).norm())?,
+        // Even where the move itself is refused, the next one starts at its end.
+        (self.program, self.position) = (end, there);
+        let step = if motion.is_arc() {
+            let arc = arc(block, self, motion, start, there)?;
+            Move::arc(arc, self.feedrate(block, arc.length())?, tolerance)
+        } else {
+            let feedrate = match motion {
+                Motion::Rapid => Feedrate::RAPID,
+                _ => self.feedrate(block, (there - start).norm())?,
+            };
+            Move::line_to(there, feedrate, tolerance)
+                .map_err(|error| Fault::new(motion_span(block), Reason::Path(error)))?
         };
-        let line = Move::line_to(end, feedrate, tolerance)
-            .map_err(|error| Fault::new(motion_span(block), Reason::Path(error)))?;
-        Ok((line, end))
+        let step = step.from_line(self.line);
+        let step = match self.modal.path_control {
+            PathControl::ExactStop => step.with_exact_stop(),
+            PathControl::Blend => step,
+        };
+        match &mut self.compensation {
+            None => moves.push_back(step),
+            Some(compensation) => {
+                let more = compensation
+                    .push(step, start, moves)
+                    .map_err(|reason| Fault::new(motion_span(block), reason))?;
+                if !more {
+                    self.compensation = None;
+                }
+            }
+        }
+        Ok(())
     }
 
-    fn end(&self, block: &Block) -> Result<Vector<3>, Fault> {
-        let mut end = self.position;
-        for (axis, letter) in AXES.into_iter().enumerate() {
-            let Some(value) = block.get(letter) else {
-                continue;
-            };
-            let length = self.modal.units.length(value);
-            let coordinate = match self.modal.distance {
-                Distance::Absolute => length,
-                Distance::Incremental => end[axis] + length,
-            };
-            end[axis] = within_reach(char::from(letter), coordinate)
-                .map_err(|reason| Fault::new(block.span(letter), reason))?;
+    /// Hands a move on, behind what waits.
+    pub(crate) fn emit(
+        &mut self,
+        step: Move<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        match &mut self.compensation {
+            Some(compensation) => compensation.pass(step, moves),
+            None => moves.push_back(step),
         }
-        Ok(end)
+        Ok(())
+    }
+
+    /// A straight move to a point of the program, without cutter compensation.
+    pub(crate) fn go(
+        &mut self,
+        end: Vector<3>,
+        feedrate: Feedrate,
+        span: Span,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        if moves.len() >= MOST_MOVES as usize {
+            let bound = MOST_MOVES;
+            return Err(Fault::new(
+                span,
+                MachiningError::TooManyMoves { bound }.into(),
+            ));
+        }
+        let there = self.offsets.to_machine(end);
+        (self.program, self.position) = (end, there);
+        let step = Move::line_to(there, feedrate, self.modal.tolerance)
+            .map_err(|error| Fault::new(span, Reason::Path(error)))?;
+        moves.push_back(step.from_line(self.line));
+        Ok(())
     }
 
     /// Feedrate of a feed move of `length`.
-    fn feedrate(&self, block: &Block, length: f64) -> Result<Feedrate, Fault> {
+    pub(crate) fn feedrate(&self, block: &Block, length: f64) -> Result<Feedrate, Fault> {
         let written = block.get(b'F');
         let span = match written {
             Some(_) => block.span(b'F'),
@@ -156,5 +314,27 @@ impl Lowering {
             }
         };
         Feedrate::new(speed).map_err(|_| fault(Reason::Feedrate { speed }))
+    }
+
+    fn save(&mut self, saving: Saving, block: &Block) -> Result<(), Fault> {
+        let modal = self.modal;
+        let Some(place) = self.saved.last_mut() else {
+            return Ok(());
+        };
+        match saving {
+            Saving::Save => *place = Some((modal, false)),
+            Saving::SaveForCall => *place = Some((modal, true)),
+            Saving::Forget => *place = None,
+            Saving::Restore => match place {
+                Some((modal, _)) => self.modal = *modal,
+                None => {
+                    let span = block
+                        .taker(Group::Saving)
+                        .map_or(Span::default(), |(_, at)| at);
+                    return Err(Fault::new(span, MachiningError::NothingSaved.into()));
+                }
+            },
+        }
+        Ok(())
     }
 }

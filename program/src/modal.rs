@@ -7,11 +7,12 @@ use crate::codes::{Distance, FeedMode, Motion, PathControl, Plane};
 use crate::error::{Fault, Notice, Remark};
 use crate::reason::Reason;
 use crate::settings::Settings;
+use crate::tools::LARGEST_TOOL;
 use crate::units::Units;
 use toolglide_kinematics::Tolerance;
 
-/// Largest number of a tool.
-const LARGEST_TOOL: u32 = 999_999;
+/// A number as near as this to a whole one is whole: it may come from an expression.
+const WHOLE: f64 = 1e-4;
 
 /// The modal state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +28,9 @@ pub(crate) struct Modal {
     pub(crate) path_control: PathControl,
     pub(crate) tolerance: Tolerance,
     pub(crate) spindle_speed: f64,
+    /// Whether cycles go back to where they began.
+    pub(crate) return_to_start: bool,
+    /// The tool that was asked for last.
     pub(crate) tool: u32,
 }
 
@@ -43,6 +47,7 @@ impl Modal {
             path_control: PathControl::Blend,
             tolerance: settings.tolerance,
             spindle_speed: 0.0,
+            return_to_start: false,
             tool: 0,
         }
     }
@@ -68,6 +73,7 @@ impl Modal {
         self.take_path_control(block, settings)?;
         self.distance = block.distance.unwrap_or(self.distance);
         self.arc_distance = block.arc_distance.unwrap_or(self.arc_distance);
+        self.return_to_start = block.return_to_start.unwrap_or(self.return_to_start);
         self.motion = block.motion.unwrap_or(self.motion);
         Ok(())
     }
@@ -145,7 +151,9 @@ pub(crate) fn whole(
     let Some(value) = block.get(letter) else {
         return Ok(None);
     };
-    if !(f64::from(least)..=f64::from(most)).contains(&value) || value.fract() != 0.0 {
+    let nearest = value.round();
+    let legal = (f64::from(least)..=f64::from(most)).contains(&nearest);
+    if !legal || (value - nearest).abs() > WHOLE {
         let reason = Reason::NotWhole {
             quantity,
             value,
@@ -159,5 +167,5 @@ pub(crate) fn whole(
         clippy::cast_sign_loss,
         reason = "whole and between two numbers of the type"
     )]
-    Ok(Some(value as u32))
+    Ok(Some(nearest as u32))
 }

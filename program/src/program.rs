@@ -3,17 +3,20 @@
 //! Not here: the language, see the crate.
 
 use crate::block::Block;
+use crate::codes::Code;
+use crate::control::o_word;
 use crate::error::{Fault, ProgramError, Remark, Warning};
+use crate::flow::Flow;
 use crate::lexer::check_text;
-use crate::lines::{LONGEST_LINE, Lines};
+use crate::lines::LONGEST_LINE;
 use crate::lower::Lowering;
-use crate::place::{Place, Span};
+use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
+use crate::tools::ToolTable;
 use std::collections::VecDeque;
 use std::io::BufRead;
 use std::iter::FusedIterator;
-use std::sync::Arc;
 use toolglide_kinematics::{Move, Vector};
 
 /// Warnings that are kept; of more, only the number is known, because a program may deserve one
@@ -22,12 +25,11 @@ pub const MOST_WARNINGS: usize = 100;
 
 /// Reads a part program and yields its moves, in order.
 ///
-/// It holds one line at a time. After the first refusal it yields nothing more; the moves before
-/// it are valid.
+/// It holds one line at a time, and the loops and subroutines that it has met. After the first refusal
+/// it yields nothing more, unless it [goes on](Self::past_refusals); the moves before it are valid.
 #[derive(Debug)]
 pub struct Program<R> {
-    file: Arc<str>,
-    lines: Lines<R>,
+    flow: Flow<R>,
     block: Block,
     lowering: Lowering,
     waiting: VecDeque<Move<3>>,
@@ -37,14 +39,14 @@ pub struct Program<R> {
     blocks: u64,
     opened: bool,
     ended: bool,
+    past_refusals: bool,
 }
 
 impl<R: BufRead> Program<R> {
     /// A program read from `reader`; messages call it `file`.
     pub fn new(reader: R, file: &str, settings: Settings) -> Self {
         Self {
-            file: Arc::from(file),
-            lines: Lines::new(reader),
+            flow: Flow::new(reader, file, settings.steps),
             block: Block::new(),
             lowering: Lowering::new(settings),
             waiting: VecDeque::new(),
@@ -54,7 +56,45 @@ impl<R: BufRead> Program<R> {
             blocks: 0,
             opened: false,
             ended: false,
+            past_refusals: false,
         }
+    }
+
+    /// The same program, with the tools of the machine.
+    #[must_use]
+    pub fn with_tools(mut self, tools: ToolTable) -> Self {
+        self.lowering.tools = tools;
+        self
+    }
+
+    /// The same program, with `find` to give the text of a subroutine that stands in a file of its
+    /// own, by its name without ending.
+    #[must_use]
+    pub fn with_subroutines(
+        mut self,
+        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
+    ) -> Self {
+        self.flow.find = Some(Box::new(find));
+        self
+    }
+
+    /// The same program, going on behind refused lines so that all refusals are seen. What it yields
+    /// after the first of them is not what the program says.
+    #[must_use]
+    pub fn past_refusals(mut self) -> Self {
+        self.past_refusals = true;
+        self
+    }
+
+    /// `G` and `M` codes met so far, in order, and how often each.
+    pub fn codes(&self) -> impl Iterator<Item = (Code, u64)> + '_ {
+        self.block.codes()
+    }
+
+    /// The line that the last refusal or the last moves came from.
+    #[must_use]
+    pub fn line_text(&self) -> std::borrow::Cow<'_, str> {
+        String::from_utf8_lossy(self.flow.text())
     }
 
     /// What should be known of the lines read so far; [`MOST_WARNINGS`] at most.
@@ -78,7 +118,7 @@ impl<R: BufRead> Program<R> {
     /// Lines read so far.
     #[must_use]
     pub fn lines(&self) -> u64 {
-        self.lines.count()
+        self.flow.lines.count()
     }
 
     /// Where the moves yielded so far, and those of the line being read, lead.
@@ -101,10 +141,11 @@ impl<R: BufRead> Program<R> {
 
     /// Reads one line.
     fn line(&mut self) -> Result<(), Fault> {
-        match self.lines.advance() {
+        match self.flow.advance() {
             Ok(true) => {}
             Ok(false) => {
                 self.ended = true;
+                self.lowering.finish(&mut self.waiting);
                 return Ok(());
             }
             Err(reason) => {
@@ -112,51 +153,72 @@ impl<R: BufRead> Program<R> {
                     Reason::LineTooLong { .. } => LONGEST_LINE,
                     _ => 0,
                 };
+                // Behind these nothing can be read.
+                self.past_refusals = false;
                 return Err(Fault::new(Span::new(at, at), reason));
             }
         }
-        let text = self.lines.text();
+        let text = self.flow.text();
         let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'));
         match start.map(|start| (start, text[start])) {
             None => return Ok(()),
             Some((start, b'/')) => return check_text(text, start),
             Some((start, b'%')) => return self.percent(start),
+            Some((_, b'N' | b'n' | b'O' | b'o')) => {
+                if let Some(at) = o_word(text) {
+                    self.blocks += 1;
+                    self.flow.obey(at, &mut self.lowering)?;
+                    return Ok(());
+                }
+            }
             Some(_) => {}
         }
-        self.block
-            .read(text, &self.lowering.settings, &mut self.remarks)?;
-        if self.block.words() == 0 {
+        let text = self.flow.text();
+        self.block.read(
+            text,
+            &self.lowering,
+            &self.lowering.settings,
+            &mut self.remarks,
+        )?;
+        if self.block.is_empty() {
             return Ok(());
         }
         self.blocks += 1;
-        let line = u32::try_from(self.lines.count()).unwrap_or(u32::MAX);
+        let line = self.flow.line();
+        // Parameters get their values once the whole line is read.
+        if !self.block.assignments.is_empty() {
+            self.lowering.assign(&mut self.block.assignments)?;
+        }
         self.ended =
             self.lowering
                 .block(&self.block, line, &mut self.waiting, &mut self.remarks)?;
+        if self.ended {
+            self.lowering.finish(&mut self.waiting);
+        }
         Ok(())
     }
 
     /// The first `%` before all blocks opens the program, any other ends it.
     fn percent(&mut self, start: usize) -> Result<(), Fault> {
-        let rest = &self.lines.text()[start + 1..];
+        let rest = &self.flow.text()[start + 1..];
         if rest.iter().any(|byte| !matches!(byte, b' ' | b'\t')) {
             let span = Span::new(start, start + 1);
             return Err(Fault::new(span, Reason::PercentNotAlone));
         }
         self.ended = self.opened || self.blocks > 0;
         self.opened = true;
+        if self.ended {
+            self.lowering.finish(&mut self.waiting);
+        }
         Ok(())
-    }
-
-    fn place(&self, span: Span) -> Place {
-        Place::new(&self.file, self.lines.count(), self.lines.text(), span)
     }
 
     fn keep_remarks(&mut self) {
         let mut remarks = std::mem::take(&mut self.remarks);
         for (span, notice) in remarks.drain(..) {
             if self.warnings.len() < MOST_WARNINGS {
-                self.warnings.push(Warning::new(self.place(span), notice));
+                self.warnings
+                    .push(Warning::new(self.flow.place(span), notice));
             } else {
                 self.more_warnings += 1;
             }
@@ -181,9 +243,11 @@ impl<R: BufRead> Iterator for Program<R> {
                 self.keep_remarks();
             }
             if let Err(fault) = outcome {
-                self.ended = true;
+                if !self.past_refusals {
+                    self.ended = true;
+                }
                 self.waiting.clear();
-                let place = self.place(fault.span);
+                let place = self.flow.place(fault.span);
                 return Some(Err(ProgramError::new(place, fault.reason)));
             }
         }

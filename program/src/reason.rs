@@ -3,7 +3,10 @@
 //! Lengths are in mm and feedrates in mm/s where they are named so, since a refusal about geometry
 //! comes after the conversion of units; anything else is as written.
 
+use crate::arithmetic_error::ArithmeticError;
 use crate::codes::Code;
+use crate::flow_error::FlowError;
+use crate::machining_error::MachiningError;
 use thiserror::Error;
 use toolglide_kinematics::ToolpathError;
 
@@ -256,5 +259,14 @@ pub enum Reason {
     },
     /// The move itself is impossible.
     #[error(transparent)]
-    Path(ToolpathError),
+    Path(#[from] ToolpathError),
+    /// A parameter or an expression is wrong.
+    #[error(transparent)]
+    Arithmetic(#[from] ArithmeticError),
+    /// A subroutine, a loop or a condition is wrong.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// The block cannot be carried out.
+    #[error(transparent)]
+    Machining(#[from] MachiningError),
 }

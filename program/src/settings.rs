@@ -18,7 +18,13 @@ pub struct Settings {
     /// Whether words that certainly do not move an axis become warnings where they would be
     /// refused.
     pub lenient: bool,
+    /// Lines of loops and subroutines that are run before a program is taken for endless.
+    pub steps: u64,
 }
+
+/// Lines of loops and subroutines that a program may run where nobody says otherwise: about a minute
+/// of reading.
+pub const MOST_STEPS: u64 = 100_000_000;
 
 impl Settings {
     /// Strict reading for a machine of three axes that starts at the origin.
@@ -30,6 +36,7 @@ impl Settings {
             start: Vector::zeros(),
             axes: [true; 3],
             lenient: false,
+            steps: MOST_STEPS,
         }
     }
 }

@@ -42,6 +42,11 @@ impl Units {
         value * self.scale()
     }
 
+    /// A length of mm in these units.
+    pub(crate) fn written(self, length: f64) -> f64 {
+        length / self.scale()
+    }
+
     /// A length in mm that may not exceed [`FARTHEST`].
     pub(crate) fn bounded_length(self, letter: char, value: f64) -> Result<f64, Reason> {
         within_reach(letter, self.length(value))

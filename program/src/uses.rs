@@ -2,27 +2,73 @@
 //!
 //! Source: RS274/NGC, where a word without a use is an error. Not here: what the words say.
 
-use crate::block::{AXES, Block};
-use crate::codes::{Code, Group, Motion, PathControl};
-use crate::error::Fault;
+use crate::block::{Block, POINT};
+use crate::codes::{Code, Group, Motion, Once, PathControl, Side, ToolLength};
+use crate::error::{Fault, Notice, Remark};
 use crate::place::Span;
 use crate::reason::Reason;
+use crate::settings::Settings;
+
+/// Letters that need a code that uses them.
+const SHARED: [u8; 10] = *b"PQRIJKLDHE";
+
+impl Motion {
+    /// Whether the motion has a use for a word beside those of the axes.
+    fn uses(self, letter: u8) -> bool {
+        let letters: &[u8] = match self {
+            Self::Off | Self::Rapid | Self::Line => b"",
+            Self::Clockwise | Self::CounterClockwise => b"PIJKR",
+            Self::Cubic => b"IJPQ",
+            Self::Quadratic => b"IJ",
+            Self::Nurbs => b"PL",
+            Self::Cycle(73 | 83) => b"RLQP",
+            Self::Cycle(81 | 85) => b"RL",
+            Self::Cycle(87) => b"RLIJK",
+            Self::Cycle(_) => b"RLP",
+        };
+        letters.contains(&letter)
+    }
+}
+
+/// The code other than a motion that takes the axis words of a block.
+fn taker_of_axes(block: &Block) -> Option<Code> {
+    let once = match block.once {
+        Some(Once::SetData | Once::GoHome(_) | Once::Shift) => block.taker(Group::NonModal),
+        _ => None,
+    };
+    let length = match block.tool_length {
+        Some(ToolLength::Given) => block.taker(Group::ToolLength),
+        Some(ToolLength::Added) if !block.has(b'H') => block.taker(Group::ToolLength),
+        _ => None,
+    };
+    once.or(length).map(|(code, _)| code)
+}
 
 /// The motion that the axis words of a block make, if any; `mode` is the modal one before it.
 pub(crate) fn motion_of(block: &Block, mode: Motion) -> Result<Option<Motion>, Fault> {
-    let axis = block.first_of(&AXES);
+    let axis = block.first_of(&POINT);
+    if let Some(taker) = taker_of_axes(block) {
+        return match (block.motion, axis) {
+            (None | Some(Motion::Off), _) => Ok(None),
+            (Some(motion), Some(letter)) => Err(ambiguous(block, letter, motion.code(), taker)),
+            (Some(motion), None) => Ok(motion.is_arc().then_some(motion)),
+        };
+    }
     match block.motion {
         Some(Motion::Off) => match axis {
             Some(letter) => Err(unused(block, letter)),
             None => Ok(None),
         },
-        Some(motion) => Ok((axis.is_some() || motion.is_arc()).then_some(motion)),
+        Some(motion) => {
+            let alone = motion.is_arc() || matches!(motion, Motion::Nurbs | Motion::Cycle(_));
+            Ok((axis.is_some() || alone).then_some(motion))
+        }
         None => {
             let offset = || block.first_of(b"IJKR").filter(|_| mode.is_arc());
             let Some(letter) = axis.or_else(offset) else {
                 return Ok(None);
             };
-            if block.dwell {
+            if block.once == Some(Once::Dwell) {
                 return Err(unused(block, letter));
             }
             if mode == Motion::Off {
@@ -37,46 +83,82 @@ pub(crate) fn motion_of(block: &Block, mode: Motion) -> Result<Option<Motion>, F
 }
 
 /// Refuses words without a use.
-pub(crate) fn check(block: &Block, motion: Option<Motion>) -> Result<(), Fault> {
-    let arc = motion.filter(|motion| motion.is_arc());
-    if arc.is_none()
-        && let Some(letter) = block.first_of(b"IJKR")
-    {
-        return Err(unused(block, letter));
-    }
-    let blends = block.path_control == Some(PathControl::Blend);
-    let blend = block
-        .taker(Group::PathControl)
-        .filter(|_| blends)
-        .map(|(code, _)| code);
-    let dwell = block.dwell.then(|| Code::new(b'G', 40));
-    if block.has(b'P') {
-        let mut users = [dwell, blend, arc.map(Motion::code), block.foreign()]
-            .into_iter()
-            .flatten();
+pub(crate) fn check(
+    block: &Block,
+    motion: Option<Motion>,
+    settings: &Settings,
+    extruder_noted: &mut bool,
+    remarks: &mut Vec<Remark>,
+) -> Result<(), Fault> {
+    let Some(_) = block.first_of(&SHARED) else {
+        return Ok(());
+    };
+    for letter in SHARED.into_iter().filter(|&letter| block.has(letter)) {
+        let mut users = users(block, motion, letter);
         match (users.next(), users.next()) {
-            (None, _) => return Err(unused(block, b'P')),
-            (Some(first), Some(second)) => {
-                let letter = 'P';
-                let reason = Reason::Ambiguous {
-                    letter,
-                    first,
-                    second,
-                };
-                return Err(Fault::new(block.span(b'P'), reason));
-            }
             (Some(_), None) => {}
+            (Some(first), Some(second)) => return Err(ambiguous(block, letter, first, second)),
+            (None, _) => {
+                let what = match letter {
+                    b'D' => "number of a cutter radius or a speed",
+                    b'E' => "extruder or spindle-tied motion",
+                    b'H' => "number of a tool length",
+                    b'L' => "count of repetitions",
+                    _ => return Err(unused(block, letter)),
+                };
+                let code = Code::letter(letter);
+                let reason = Reason::NotSupported { code, what };
+                let span = block.span(letter);
+                if !settings.lenient && letter != b'E' {
+                    return Err(Fault::new(span, reason));
+                }
+                // A print has one on almost every line.
+                if letter != b'E' || !std::mem::replace(extruder_noted, true) {
+                    remarks.push((span, Notice::Skipped(reason)));
+                }
+            }
         }
-    }
-    if block.has(b'Q') && blend.or(block.foreign()).is_none() {
-        return Err(unused(block, b'Q'));
     }
     Ok(())
 }
 
+/// The codes of a block that have a use for a word.
+fn users(block: &Block, motion: Option<Motion>, letter: u8) -> impl Iterator<Item = Code> {
+    let group = |group, letters: &[u8]| {
+        let taker = letters.contains(&letter).then(|| block.taker(group));
+        taker.flatten().map(|(code, _)| code)
+    };
+    let once = match block.once {
+        Some(Once::Dwell) => group(Group::NonModal, b"P"),
+        Some(Once::SetData) => group(Group::NonModal, b"LPRIJQ"),
+        _ => None,
+    };
+    let control = match block.path_control {
+        Some(PathControl::Blend) => group(Group::PathControl, b"PQ"),
+        _ => None,
+    };
+    let side = match block.side {
+        Some(Side::Left | Side::Right) => group(Group::CutterCompensation, b"D"),
+        Some(Side::LeftOf | Side::RightOf) => group(Group::CutterCompensation, b"DL"),
+        _ => None,
+    };
+    let length = match block.tool_length {
+        Some(ToolLength::Table | ToolLength::Added) => group(Group::ToolLength, b"H"),
+        _ => None,
+    };
+    let outside = group(Group::Outside, b"PQLE");
+    let motion = motion
+        .filter(|motion| motion.uses(letter))
+        .map(Motion::code);
+    let foreign = block.foreign().filter(|_| b"PQ".contains(&letter));
+    [once, control, motion, side, length, outside, foreign]
+        .into_iter()
+        .flatten()
+}
+
 /// Where the cause of the motion stands: its code, or its first word.
 pub(crate) fn motion_span(block: &Block) -> Span {
-    match (block.taker(Group::Motion), block.first_of(b"XYZIJKR")) {
+    match (block.taker(Group::Motion), block.first_of(b"XYZ@^ABCIJKR")) {
         (Some((_, span)), _) => span,
         (None, Some(letter)) => block.span(letter),
         (None, None) => Span::default(),
@@ -86,6 +168,15 @@ pub(crate) fn motion_span(block: &Block) -> Span {
 fn unused(block: &Block, letter: u8) -> Fault {
     let reason = Reason::Unused {
         letter: char::from(letter),
+    };
+    Fault::new(block.span(letter), reason)
+}
+
+fn ambiguous(block: &Block, letter: u8, first: Code, second: Code) -> Fault {
+    let reason = Reason::Ambiguous {
+        letter: char::from(letter),
+        first,
+        second,
     };
     Fault::new(block.span(letter), reason)
 }

@@ -1,0 +1,366 @@
+//! Cutter compensation: the tool goes beside the path, at the distance of its radius.
+//!
+//! Source: `G40` to `G42.1` of LinuxCNC. Around an outside corner goes an arc; in an inside corner both
+//! moves end where their offsets meet. A move waits until the next one is known. The first move leads
+//! in, straight and longer than the radius; the first one after `G40` leads out. Not here: the radius.
+
+use crate::codes::Plane;
+use crate::machining_error::MachiningError;
+use crate::offset_curve::{Curve, Flat, cross, dot, minus, norm};
+use crate::reason::Reason;
+use std::collections::VecDeque;
+use toolglide_kinematics::numeric::SHORTEST_LENGTH;
+use toolglide_kinematics::{Arc, Move, Path, Vector};
+
+/// Moves whose directions differ by less than this at a corner go on smoothly, rad: what coordinates
+/// of four decimals leave of a tangent.
+const SMOOTH: f64 = 1e-3;
+
+/// Moves along the normal of the plane that may wait behind the last one in the plane.
+const MOST_WAITING: usize = 10_000;
+
+/// Compensation that is on, or about to end.
+#[derive(Debug)]
+pub(crate) struct Compensation {
+    axes: [usize; 2],
+    normal: usize,
+    /// Distance of the tool to the left of the path, mm; negative to the right.
+    distance: f64,
+    /// Where the moves that are handed on end.
+    at: Vector<3>,
+    state: State,
+    /// The last move in the plane, and what must stay behind it.
+    waiting: Option<Waiting>,
+    behind: VecDeque<Behind>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// The next move leads in.
+    LeadIn,
+    On,
+    /// The next move leads out.
+    LeadOut,
+}
+
+/// A move beside the path, whose end may still change.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    curve: Curve,
+    /// Its course beside the path: that of the curve, but for a lead-in.
+    course: Curve,
+    /// End of the programmed move.
+    corner: Flat,
+    heights: [f64; 2],
+    step: Move<3>,
+}
+
+/// What happens where the last move ends.
+#[derive(Clone, Copy, Debug)]
+enum Behind {
+    /// A move to a height.
+    Height(f64, Move<3>),
+    /// A dwell.
+    Rest(Move<3>),
+}
+
+impl Compensation {
+    /// Compensation of a tool of `radius` in mm, beginning at a point.
+    pub(crate) fn new(plane: Plane, radius: f64, left: bool, at: Vector<3>) -> Self {
+        Self {
+            axes: plane.axes(),
+            normal: plane.normal(),
+            distance: if left { radius } else { -radius },
+            at,
+            state: State::LeadIn,
+            waiting: None,
+            behind: VecDeque::new(),
+        }
+    }
+
+    /// Where the tool is once all moves so far are made.
+    pub(crate) fn position(&self) -> Vector<3> {
+        self.at
+    }
+
+    /// The code that says on which side it is, times ten.
+    pub(crate) fn code(&self) -> f64 {
+        match self.state {
+            State::LeadOut => 400.0,
+            _ if self.distance >= 0.0 => 410.0,
+            _ => 420.0,
+        }
+    }
+
+    /// Whether only the lead-out is left.
+    pub(crate) fn is_ending(&self) -> bool {
+        self.state == State::LeadOut
+    }
+
+    /// Whether it ended before it began.
+    pub(crate) fn is_over(&self) -> bool {
+        self.state == State::LeadOut && self.distance == 0.0
+    }
+
+    /// The next move leads out.
+    pub(crate) fn end(&mut self, moves: &mut VecDeque<Move<3>>) {
+        self.flush(moves);
+        if self.state == State::LeadIn {
+            self.distance = 0.0;
+        }
+        self.state = State::LeadOut;
+    }
+
+    /// Makes all moves that wait.
+    pub(crate) fn flush(&mut self, moves: &mut VecDeque<Move<3>>) {
+        if let Some(waiting) = self.waiting.take() {
+            self.make(&waiting.curve, waiting.heights, &waiting.step, moves);
+        }
+        while let Some(next) = self.behind.pop_front() {
+            match next {
+                Behind::Height(height, step) => {
+                    let mut end = self.at;
+                    end[self.normal] = height;
+                    self.line(end, &step, moves);
+                }
+                Behind::Rest(step) => moves.push_back(step),
+            }
+        }
+    }
+
+    /// A dwell, in its place among the moves.
+    pub(crate) fn pass(&mut self, step: Move<3>, moves: &mut VecDeque<Move<3>>) {
+        if self.waiting.is_some() {
+            self.behind.push_back(Behind::Rest(step));
+        } else {
+            moves.push_back(step);
+        }
+    }
+
+    /// Takes the next programmed move, which begins at `start`; false when it led out.
+    pub(crate) fn push(
+        &mut self,
+        step: Move<3>,
+        start: Vector<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<bool, Reason> {
+        let end = step.end(start);
+        let programmed = self.curve(&step, start);
+        if self.state == State::LeadOut {
+            if matches!(step.path(), Path::Arc(_)) && self.distance != 0.0 {
+                let begins_or_ends = "ends";
+                return Err(MachiningError::LeadByArc { begins_or_ends }.into());
+            }
+            moves.push_back(step);
+            return Ok(false);
+        }
+        let Some(tangents) = programmed.tangents() else {
+            let next = Behind::Height(end[self.normal], step);
+            if self.behind.len() >= MOST_WAITING {
+                let bound = crate::lower::MOST_MOVES;
+                return Err(MachiningError::TooManyMoves { bound }.into());
+            }
+            self.behind.push_back(next);
+            if self.waiting.is_none() {
+                self.flush(moves);
+            }
+            return Ok(true);
+        };
+        let radius = self.distance.abs();
+        let course = programmed
+            .offset(self.distance)
+            .map_err(|arc| MachiningError::ToolTooLarge { radius, arc })?;
+        let heights = [start[self.normal], end[self.normal]];
+        let mut next = Waiting {
+            curve: course,
+            course,
+            corner: programmed.end(),
+            heights,
+            step,
+        };
+        if self.state == State::LeadIn {
+            self.check_lead_in(&step, &programmed)?;
+            self.state = State::On;
+            next.curve.set_start(self.flat(self.at));
+        } else if let Some(last) = self.waiting.take() {
+            self.corner(last, &mut next, tangents[0], moves)?;
+        }
+        self.waiting = Some(next);
+        Ok(true)
+    }
+
+    fn check_lead_in(&self, step: &Move<3>, programmed: &Curve) -> Result<(), MachiningError> {
+        if matches!(step.path(), Path::Arc(_)) && self.distance != 0.0 {
+            let begins_or_ends = "begins";
+            return Err(MachiningError::LeadByArc { begins_or_ends });
+        }
+        let length = norm(minus(programmed.end(), self.flat(self.at)));
+        let radius = self.distance.abs();
+        if length <= radius {
+            return Err(MachiningError::LeadInTooShort { length, radius });
+        }
+        Ok(())
+    }
+
+    /// Joins the last move with the next one.
+    fn corner(
+        &mut self,
+        mut last: Waiting,
+        next: &mut Waiting,
+        outgoing: Flat,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Reason> {
+        // A course without length would have no direction, but such moves do not wait.
+        let incoming = last.course.tangents().map_or(outgoing, |ends| ends[1]);
+        let turn = cross(incoming, outgoing).atan2(dot(incoming, outgoing));
+        let inwards = (turn > 0.0) == (self.distance > 0.0);
+        let gap = norm(minus(last.curve.end(), next.curve.start()));
+        if gap <= SHORTEST_LENGTH || self.distance == 0.0 {
+            next.curve.set_start(last.curve.end());
+            next.course.set_start(last.curve.end());
+            self.hand_on(&last, moves);
+            return Ok(());
+        }
+        if inwards && turn.abs() < std::f64::consts::PI {
+            let meeting = last.course.meets(&next.course, last.corner);
+            let meeting = match meeting {
+                Some(point) => point,
+                // Nearly tangent moves may miss each other by rounding.
+                None if turn.abs() <= SMOOTH => last.curve.end(),
+                None => {
+                    let radius = self.distance.abs();
+                    return Err(MachiningError::Gouge { radius }.into());
+                }
+            };
+            last.curve.set_end(meeting);
+            next.curve.set_start(meeting);
+            next.course.set_start(meeting);
+            self.hand_on(&last, moves);
+            return Ok(());
+        }
+        let corner = last.corner;
+        self.hand_on(&last, moves);
+        if turn.abs() <= SMOOTH {
+            let height = self.at[self.normal];
+            let bridge = Curve::Line {
+                from: self.flat(self.at),
+                to: next.curve.start(),
+            };
+            self.make(&bridge, [height; 2], &next.step, moves);
+        } else {
+            let height = self.at[self.normal];
+            let around = Curve::Arc {
+                center: corner,
+                from: self.flat(self.at),
+                to: next.curve.start(),
+                counter_clockwise: self.distance < 0.0,
+                extra_turns: 0,
+            };
+            self.make(&around, [height; 2], &next.step, moves);
+        }
+        Ok(())
+    }
+
+    /// Makes a move whose end is known, and what waits behind it.
+    fn hand_on(&mut self, last: &Waiting, moves: &mut VecDeque<Move<3>>) {
+        self.waiting = Some(*last);
+        self.flush(moves);
+    }
+
+    /// Appends a move along a curve, from the first height to the second.
+    fn make(
+        &mut self,
+        curve: &Curve,
+        heights: [f64; 2],
+        step: &Move<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) {
+        let end = self.raised(curve.end(), heights[1]);
+        if let Curve::Arc {
+            center,
+            counter_clockwise,
+            extra_turns,
+            ..
+        } = curve
+        {
+            let center = self.raised(*center, heights[0]);
+            let arc = Arc::about(
+                self.at,
+                end,
+                center,
+                self.axes,
+                *counter_clockwise,
+                *extra_turns,
+            );
+            if let Ok(arc) = arc {
+                let next = Move::arc(arc, step.feedrate(), step.tolerance());
+                self.push_like(next, step, moves);
+                self.at = end;
+                return;
+            }
+            // Both radii are those of arcs that were legal, so that this is never reached but by
+            // arcs shorter than rounding.
+        }
+        self.line(end, step, moves);
+    }
+
+    fn line(&mut self, end: Vector<3>, step: &Move<3>, moves: &mut VecDeque<Move<3>>) {
+        // The end comes from finite coordinates, so that it is always a move.
+        if let Ok(next) = Move::line_to(end, step.feedrate(), step.tolerance()) {
+            self.push_like(next, step, moves);
+            self.at = end;
+        }
+    }
+
+    fn push_like(&self, next: Move<3>, step: &Move<3>, moves: &mut VecDeque<Move<3>>) {
+        let next = next.from_line(step.line());
+        moves.push_back(if step.stops() {
+            next.with_exact_stop()
+        } else {
+            next
+        });
+    }
+
+    /// A programmed move in the plane.
+    fn curve(&self, step: &Move<3>, start: Vector<3>) -> Curve {
+        match step.path() {
+            Path::Arc(arc) => Curve::Arc {
+                center: self.flat(arc.center()),
+                from: self.flat(start),
+                to: self.flat(arc.end()),
+                counter_clockwise: arc.sweep() > 0.0,
+                extra_turns: whole_turns(arc.sweep()),
+            },
+            _ => Curve::Line {
+                from: self.flat(start),
+                to: self.flat(step.end(start)),
+            },
+        }
+    }
+
+    fn flat(&self, point: Vector<3>) -> Flat {
+        self.axes.map(|axis| point[axis])
+    }
+
+    fn raised(&self, point: Flat, height: f64) -> Vector<3> {
+        let mut raised = Vector::zeros();
+        raised[self.axes[0]] = point[0];
+        raised[self.axes[1]] = point[1];
+        raised[self.normal] = height;
+        raised
+    }
+}
+
+/// Whole turns of an arc beyond the first.
+fn whole_turns(sweep: f64) -> u32 {
+    let turns = (sweep.abs() / std::f64::consts::TAU - 1e-9)
+        .floor()
+        .max(0.0);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "programs are refused beyond a million turns"
+    )]
+    let turns = turns as u32;
+    turns
+}

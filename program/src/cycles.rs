@@ -1,0 +1,340 @@
+//! Canned cycles: drilling, tapping and boring.
+//!
+//! Source: `G73`, `G74` and `G81` to `G89` of RS274/NGC and LinuxCNC. The words of a cycle hold until
+//! another motion code; `L` for its block only. Every move of a cycle ends in rest, because a hole has
+//! a bottom. Not here: the spindle, which turns as it likes.
+
+use crate::block::{AXES, Block};
+use crate::codes::{Distance, Motion};
+use crate::error::Fault;
+use crate::lower::{Lowering, MOST_MOVES};
+use crate::machining_error::MachiningError;
+use crate::modal::{not_negative, whole};
+use crate::place::Span;
+use crate::reason::Reason;
+use crate::units::within_reach;
+use crate::uses::motion_span;
+use std::collections::VecDeque;
+use toolglide_kinematics::{Feedrate, Move, Vector};
+
+/// How far the tool is drawn back to break a chip, and how far from the bottom a deep hole is entered
+/// again, mm: a hundredth of an inch, as LinuxCNC does.
+const PECK_CLEARANCE: f64 = 0.254;
+
+/// What a cycle remembers from block to block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CycleState {
+    motion: Motion,
+    /// Height at which the first of consecutive cycles began, mm.
+    initial: f64,
+    retract: f64,
+    bottom: f64,
+    dwell: f64,
+    peck: f64,
+    offsets: [f64; 3],
+}
+
+/// One hole.
+#[derive(Clone, Copy, Debug)]
+struct Hole {
+    span: Span,
+    /// Axis along which the tool goes, and the two others.
+    depth: usize,
+    sides: [usize; 2],
+    retract: f64,
+    bottom: f64,
+    /// Height to which the tool goes back at the end.
+    clear: f64,
+    feedrate: Feedrate,
+}
+
+impl Lowering {
+    /// Drills the holes of a block.
+    pub(crate) fn cycle(
+        &mut self,
+        block: &Block,
+        motion: Motion,
+        former: Motion,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let span = motion_span(block);
+        let code = motion.code();
+        let refuse = |state| Fault::new(span, MachiningError::NotNow { code, state }.into());
+        if self.compensation.is_some() {
+            return Err(refuse("while cutter compensation is on (G40 ends it)"));
+        }
+        if block.first_of(b"@^").is_some() {
+            return Err(refuse("with polar coordinates"));
+        }
+        if block.first_of(&AXES).is_none() {
+            let reason = MachiningError::Companion {
+                code,
+                companion: "an axis word",
+            };
+            return Err(Fault::new(span, reason.into()));
+        }
+        let sides = self.modal.plane.axes();
+        let depth = self.modal.plane.normal();
+        let state = self.cycle_words(block, motion, former, depth)?;
+        self.cycle = Some(state);
+        // In inverse time there is no feedrate that all moves of a cycle could share.
+        if block.get(b'F').is_none() && self.modal.feedrate.is_none() {
+            return Err(Fault::new(span, Reason::NoFeedrate));
+        }
+        if self.modal.feed_mode == crate::codes::FeedMode::InverseTime {
+            return Err(refuse("with inverse time (G93)"));
+        }
+        let feedrate = self.feedrate(block, 1.0)?;
+        let clear = if self.modal.return_to_start {
+            state.initial.max(state.retract)
+        } else {
+            state.retract
+        };
+        let hole = Hole {
+            span,
+            depth,
+            sides,
+            retract: state.retract,
+            bottom: state.bottom,
+            clear,
+            feedrate,
+        };
+        let repetitions = whole(block, b'L', "repetitions", 0, MOST_MOVES)?.unwrap_or(1);
+        let first = moves.len();
+        let mut outcome = self.raise(&hole, moves);
+        let mut center = self.program;
+        for _ in 0..repetitions {
+            if outcome.is_err() {
+                break;
+            }
+            outcome = self
+                .next_center(block, sides, &mut center)
+                .and_then(|()| self.drill(motion, &hole, &state, center, moves));
+        }
+        for step in moves.iter_mut().skip(first) {
+            *step = step.with_exact_stop();
+        }
+        outcome
+    }
+
+    /// The words of a cycle, those of its former blocks included.
+    fn cycle_words(
+        &self,
+        block: &Block,
+        motion: Motion,
+        former: Motion,
+        depth: usize,
+    ) -> Result<CycleState, Fault> {
+        let before = self.cycle.filter(|state| former == state.motion);
+        let sticky = before.filter(|state| state.motion == motion);
+        let consecutive = self.cycle.filter(|_| former.is_cycle());
+        let initial = consecutive.map_or(self.program[depth], |state| state.initial);
+        let code = motion.code();
+        let incomplete = |letter| {
+            let reason = MachiningError::CycleIncomplete {
+                code,
+                letter: char::from(letter),
+            };
+            Fault::new(motion_span(block), reason.into())
+        };
+        let incremental = self.modal.distance == Distance::Incremental;
+        let from = |letter: u8, base: f64, length: f64| {
+            let sum = if incremental { base + length } else { length };
+            within_reach(char::from(letter), sum)
+                .map_err(|reason| Fault::new(block.span(letter), reason))
+        };
+        let retract = match (self.length(block, b'R')?, sticky) {
+            (Some(length), _) => from(b'R', self.program[depth], length)?,
+            (None, Some(state)) => state.retract,
+            (None, None) => return Err(incomplete(b'R')),
+        };
+        let bottom = match (self.length(block, AXES[depth])?, sticky) {
+            (Some(length), _) => from(AXES[depth], retract, length)?,
+            (None, Some(state)) => state.bottom,
+            (None, None) => return Err(incomplete(AXES[depth])),
+        };
+        if retract < bottom {
+            let reason = MachiningError::RetractBelowBottom { retract, bottom };
+            return Err(Fault::new(motion_span(block), reason.into()));
+        }
+        let needs_peck = matches!(motion, Motion::Cycle(73 | 83));
+        let peck = match (self.length(block, b'Q')?, sticky) {
+            (Some(peck), _) if peck <= 0.0 && needs_peck => {
+                let (quantity, value) = ("depth of a peck", peck);
+                let reason = Reason::NotPositive { quantity, value };
+                return Err(Fault::new(block.span(b'Q'), reason));
+            }
+            (Some(peck), _) => peck,
+            (None, Some(state)) => state.peck,
+            (None, None) if needs_peck => return Err(incomplete(b'Q')),
+            (None, None) => 0.0,
+        };
+        let dwell = not_negative(block, b'P', "dwell")?;
+        let needs_dwell = matches!(motion, Motion::Cycle(82 | 86 | 88 | 89));
+        let dwell = match (dwell, sticky) {
+            (Some(dwell), _) => dwell,
+            (None, Some(state)) => state.dwell,
+            (None, None) if needs_dwell => return Err(incomplete(b'P')),
+            (None, None) => 0.0,
+        };
+        let mut offsets = sticky.map_or([None; 3], |state| state.offsets.map(Some));
+        for (offset, letter) in offsets.iter_mut().zip(*b"IJK") {
+            *offset = self.length(block, letter)?.or(*offset);
+            if offset.is_none() && motion == Motion::Cycle(87) {
+                return Err(incomplete(letter));
+            }
+        }
+        Ok(CycleState {
+            motion,
+            initial,
+            retract,
+            bottom,
+            dwell,
+            peck,
+            offsets: offsets.map(Option::unwrap_or_default),
+        })
+    }
+
+    /// A tool below the plane of retraction goes up before it goes anywhere else.
+    fn raise(&mut self, hole: &Hole, moves: &mut VecDeque<Move<3>>) -> Result<(), Fault> {
+        if self.program[hole.depth] < hole.retract {
+            self.go_deep(hole, hole.retract, Feedrate::RAPID, moves)?;
+        }
+        Ok(())
+    }
+
+    /// Where the next hole is.
+    fn next_center(
+        &self,
+        block: &Block,
+        sides: [usize; 2],
+        center: &mut Vector<3>,
+    ) -> Result<(), Fault> {
+        for axis in sides {
+            let letter = AXES[axis];
+            if let Some(length) = self.length(block, letter)? {
+                let place = match self.modal.distance {
+                    Distance::Absolute => length,
+                    Distance::Incremental => center[axis] + length,
+                };
+                center[axis] = within_reach(char::from(letter), place)
+                    .map_err(|reason| Fault::new(block.span(letter), reason))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn drill(
+        &mut self,
+        motion: Motion,
+        hole: &Hole,
+        state: &CycleState,
+        center: Vector<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let rapid = Feedrate::RAPID;
+        let feed = hole.feedrate;
+        let (bottom, retract) = (hole.bottom, hole.retract);
+        self.go_aside(hole, center, rapid, moves)?;
+        self.go_deep(hole, retract, rapid, moves)?;
+        match motion {
+            Motion::Cycle(73 | 83) => {
+                let mut depth = retract;
+                loop {
+                    depth -= state.peck;
+                    if depth <= bottom {
+                        break;
+                    }
+                    self.go_deep(hole, depth, feed, moves)?;
+                    if motion == Motion::Cycle(83) {
+                        self.go_deep(hole, retract, rapid, moves)?;
+                    }
+                    self.go_deep(hole, depth + PECK_CLEARANCE, rapid, moves)?;
+                }
+                self.go_deep(hole, bottom, feed, moves)?;
+            }
+            Motion::Cycle(87) => return self.bore_back(hole, state, center, moves),
+            _ => self.go_deep(hole, bottom, feed, moves)?,
+        }
+        if state.dwell > 0.0 {
+            moves.push_back(self.rest(state.dwell, hole.span)?);
+        }
+        match motion {
+            Motion::Cycle(74 | 84 | 85) => {
+                self.go_deep(hole, retract, feed, moves)?;
+                self.go_deep(hole, hole.clear, rapid, moves)
+            }
+            Motion::Cycle(89) => self.go_deep(hole, hole.clear, feed, moves),
+            Motion::Cycle(88) => {
+                moves.push_back(self.rest(0.0, hole.span)?);
+                self.go_deep(hole, hole.clear, rapid, moves)
+            }
+            _ => self.go_deep(hole, hole.clear, rapid, moves),
+        }
+    }
+
+    /// `G87`: the tool goes down beside the hole, and cuts upwards.
+    fn bore_back(
+        &mut self,
+        hole: &Hole,
+        state: &CycleState,
+        center: Vector<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let rapid = Feedrate::RAPID;
+        let [first, second, third] = state.offsets;
+        let mut beside = center;
+        beside[hole.sides[0]] += first;
+        beside[hole.sides[1]] += second;
+        let top = match self.modal.distance {
+            Distance::Absolute => third,
+            Distance::Incremental => hole.bottom + third,
+        };
+        self.go_aside(hole, beside, rapid, moves)?;
+        self.go_deep(hole, hole.bottom, rapid, moves)?;
+        self.go_aside(hole, center, rapid, moves)?;
+        self.go_deep(hole, top, hole.feedrate, moves)?;
+        self.go_deep(hole, hole.bottom, hole.feedrate, moves)?;
+        self.go_aside(hole, beside, rapid, moves)?;
+        self.go_deep(hole, hole.clear, rapid, moves)?;
+        self.go_aside(hole, center, rapid, moves)
+    }
+
+    fn go_deep(
+        &mut self,
+        hole: &Hole,
+        height: f64,
+        feedrate: Feedrate,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let mut end = self.program;
+        end[hole.depth] = height;
+        self.go_where_needed(end, feedrate, hole.span, moves)
+    }
+
+    fn go_aside(
+        &mut self,
+        hole: &Hole,
+        center: Vector<3>,
+        feedrate: Feedrate,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let mut end = center;
+        end[hole.depth] = self.program[hole.depth];
+        self.go_where_needed(end, feedrate, hole.span, moves)
+    }
+
+    /// A move that leads nowhere is none.
+    fn go_where_needed(
+        &mut self,
+        end: Vector<3>,
+        feedrate: Feedrate,
+        span: Span,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        if end == self.program {
+            return Ok(());
+        }
+        self.go(end, feedrate, span, moves)
+    }
+}

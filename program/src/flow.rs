@@ -1,0 +1,276 @@
+//! Which line comes next: the file, or lines of it that are run again.
+//!
+//! The file itself is read once and never held; only loops and subroutines are remembered. Not
+//! here: what an O word does, see `branch`.
+
+use crate::control::{Control, Keyword, Label, glance};
+use crate::error::Fault;
+use crate::flow_error::FlowError;
+use crate::lines::Lines;
+use crate::place::{Place, Span};
+use crate::reason::Reason;
+use crate::recording::{LONGEST_RECORDING, Recording};
+use std::collections::BTreeMap;
+use std::io::BufRead;
+use std::sync::Arc;
+
+/// A block that is running.
+#[derive(Debug)]
+pub(crate) struct Open {
+    pub(crate) label: Label,
+    /// `If`, `While`, `Do` or `Repeat`.
+    pub(crate) keyword: Keyword,
+    /// Index of its first line, in a recording.
+    pub(crate) start: usize,
+    /// Repetitions that are left.
+    pub(crate) left: f64,
+}
+
+/// A recording that is running.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    pub(crate) recording: Arc<Recording>,
+    /// Index of the line that is next.
+    pub(crate) next: usize,
+    pub(crate) open: Vec<Open>,
+    /// Whether it is a subroutine.
+    pub(crate) call: bool,
+}
+
+/// Finds the text of a subroutine by its name.
+pub(crate) type Find = Box<dyn Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send>;
+
+/// Where a program is being run.
+pub(crate) struct Flow<R> {
+    pub(crate) file: Arc<str>,
+    pub(crate) lines: Lines<R>,
+    pub(crate) frames: Vec<Frame>,
+    /// Conditions that are open in the file itself.
+    pub(crate) open: Vec<Open>,
+    pub(crate) subroutines: BTreeMap<Label, Arc<Recording>>,
+    pub(crate) find: Option<Find>,
+    pub(crate) most_steps: u64,
+    /// The line being run, if it is not the one of the file.
+    current: Option<(Arc<Recording>, usize)>,
+    steps: u64,
+}
+
+impl<R> std::fmt::Debug for Flow<R> {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.debug_struct("Flow")
+            .field("file", &self.file)
+            .field("frames", &self.frames)
+            .field("steps", &self.steps)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<R: BufRead> Flow<R> {
+    pub(crate) fn new(reader: R, file: &str, most_steps: u64) -> Self {
+        Self {
+            file: Arc::from(file),
+            lines: Lines::new(reader),
+            frames: Vec::new(),
+            open: Vec::new(),
+            subroutines: BTreeMap::new(),
+            find: None,
+            most_steps,
+            current: None,
+            steps: 0,
+        }
+    }
+
+    /// The line being run.
+    pub(crate) fn text(&self) -> &[u8] {
+        match &self.current {
+            Some((recording, index)) => recording.line(*index),
+            None => self.lines.text(),
+        }
+    }
+
+    /// Number of the line being run that its moves carry: where it is of another file, the line of
+    /// the program that called it.
+    pub(crate) fn line(&self) -> u32 {
+        let number = match &self.current {
+            Some((recording, index)) => {
+                if let Some(line) = recording.outer {
+                    return line;
+                }
+                recording.number(*index)
+            }
+            None => self.lines.count(),
+        };
+        u32::try_from(number).unwrap_or(u32::MAX)
+    }
+
+    /// Where a part of the line being run stands.
+    pub(crate) fn place(&self, span: Span) -> Place {
+        let (file, number) = match &self.current {
+            Some((recording, index)) => (&recording.file, recording.number(*index)),
+            None => (&self.file, self.lines.count()),
+        };
+        Place::new(file, number, self.text(), span)
+    }
+
+    /// Goes to the next line; false at the end of the program.
+    pub(crate) fn advance(&mut self) -> Result<bool, Reason> {
+        while let Some(frame) = self.frames.last_mut() {
+            if frame.next < frame.recording.len() {
+                self.current = Some((Arc::clone(&frame.recording), frame.next));
+                frame.next += 1;
+                return self.step().map(|()| true);
+            }
+            self.frames.pop();
+        }
+        self.current = None;
+        self.lines.advance()
+    }
+
+    /// Counts a line that is run again.
+    fn step(&mut self) -> Result<(), Reason> {
+        self.steps += 1;
+        if self.steps > self.most_steps {
+            let bound = self.most_steps;
+            return Err(FlowError::TooManySteps { bound }.into());
+        }
+        Ok(())
+    }
+
+    /// Blocks that are open where the program is.
+    pub(crate) fn open(&mut self) -> &mut Vec<Open> {
+        match self.frames.last_mut() {
+            Some(frame) => &mut frame.open,
+            None => &mut self.open,
+        }
+    }
+
+    /// Goes on behind the line at an index of the recording that is running.
+    pub(crate) fn jump_to(&mut self, index: usize) {
+        if let Some(frame) = self.frames.last_mut() {
+            frame.next = index;
+        }
+    }
+
+    /// Index of the line being run in its recording.
+    pub(crate) fn index(&self) -> usize {
+        self.current.as_ref().map_or(0, |(_, index)| *index)
+    }
+
+    /// Passes over lines until one of `ends` with the label of `control`, which is then the line
+    /// being run.
+    pub(crate) fn skip(
+        &mut self,
+        control: &Control,
+        ends: &[Keyword],
+        closing: &'static str,
+    ) -> Result<Keyword, Fault> {
+        loop {
+            let more = match self.frames.last_mut() {
+                Some(frame) if frame.next < frame.recording.len() => {
+                    self.current = Some((Arc::clone(&frame.recording), frame.next));
+                    frame.next += 1;
+                    self.step().map_err(|reason| control.because(reason))?;
+                    true
+                }
+                Some(_) => false,
+                None => self
+                    .lines
+                    .advance()
+                    .map_err(|reason| control.because(reason))?,
+            };
+            if !more {
+                return Err(control.not_closed(closing));
+            }
+            if let Some(keyword) = glance(self.text(), &control.label)
+                && ends.contains(&keyword)
+            {
+                return Ok(keyword);
+            }
+        }
+    }
+
+    /// Remembers lines from the one being run, or from the next, to the end of the block that
+    /// `control` begins.
+    pub(crate) fn record(
+        &mut self,
+        control: &Control,
+        with_first: bool,
+        end: Keyword,
+    ) -> Result<Arc<Recording>, Fault> {
+        let outer = self
+            .current
+            .as_ref()
+            .and_then(|(recording, _)| recording.outer);
+        let (file, number) = match &self.current {
+            Some((recording, index)) => (Arc::clone(&recording.file), recording.number(*index)),
+            None => (Arc::clone(&self.file), self.lines.count()),
+        };
+        let mut recording = Recording::new(&file, number + u64::from(!with_first));
+        recording.outer = outer;
+        let mut fits = !with_first || recording.push(self.text());
+        loop {
+            let more = match self.frames.last_mut() {
+                Some(frame) if frame.next < frame.recording.len() => {
+                    self.current = Some((Arc::clone(&frame.recording), frame.next));
+                    frame.next += 1;
+                    true
+                }
+                Some(_) => false,
+                None => self
+                    .lines
+                    .advance()
+                    .map_err(|reason| control.because(reason))?,
+            };
+            if !more {
+                return Err(control.not_closed(end.name()));
+            }
+            fits = fits && recording.push(self.text());
+            if !fits {
+                let bound = LONGEST_RECORDING;
+                return Err(control.fault(FlowError::TooLong { bound }));
+            }
+            if glance(self.text(), &control.label) == Some(end) {
+                return Ok(Arc::new(recording));
+            }
+        }
+    }
+
+    /// Runs a recording from its first line.
+    pub(crate) fn run(&mut self, recording: Arc<Recording>, call: bool) {
+        self.frames.push(Frame {
+            recording,
+            next: 0,
+            open: Vec::new(),
+            call,
+        });
+    }
+
+    /// Ends the innermost subroutine; false when none runs.
+    pub(crate) fn leave(&mut self) -> bool {
+        let Some(call) = self.frames.iter().rposition(|frame| frame.call) else {
+            return false;
+        };
+        self.frames.truncate(call);
+        true
+    }
+
+    /// Subroutines that are running.
+    pub(crate) fn depth(&self) -> usize {
+        self.frames.iter().filter(|frame| frame.call).count()
+    }
+}
+
+impl Control {
+    /// A refusal of something met on the way to the end of this block.
+    pub(crate) fn because(&self, reason: Reason) -> Fault {
+        Fault::new(self.span, reason)
+    }
+
+    fn not_closed(&self, closing: &'static str) -> Fault {
+        self.fault(FlowError::NotClosed {
+            keyword: self.keyword.name(),
+            label: self.label.to_string().into(),
+            closing,
+        })
+    }
+}

@@ -1,0 +1,99 @@
+//! What can be wrong with subroutines, loops and conditions.
+//!
+//! Not here: words and codes, see [`Reason`](crate::Reason).
+
+use thiserror::Error;
+
+/// Why an O word is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FlowError {
+    /// An O word without a label.
+    #[error("O needs a number, or a name in angle brackets, after it")]
+    LabelMissing,
+    /// An O word with something unknown behind its label.
+    #[error(
+        "not known after a label: write SUB, ENDSUB, CALL, RETURN, IF, ELSEIF, ELSE, ENDIF, WHILE, ENDWHILE, DO, REPEAT, ENDREPEAT, BREAK or CONTINUE"
+    )]
+    UnknownKeyword,
+    /// A keyword without its expression.
+    #[error("{keyword} needs an expression in brackets after it")]
+    ExpressionMissing {
+        /// The keyword.
+        keyword: &'static str,
+    },
+    /// Something behind the end of an O word.
+    #[error("nothing may follow here on the line of an O word")]
+    Trailing,
+    /// The end or the middle of a block that was not begun.
+    #[error("{keyword} of {label} without its {opening}")]
+    NotOpen {
+        /// The keyword.
+        keyword: &'static str,
+        /// The label.
+        label: Box<str>,
+        /// What would have to stand before it.
+        opening: &'static str,
+    },
+    /// A block without its end.
+    #[error("{keyword} of {label} is not closed: {closing} is missing")]
+    NotClosed {
+        /// The keyword.
+        keyword: &'static str,
+        /// The label.
+        label: Box<str>,
+        /// What is missing.
+        closing: &'static str,
+    },
+    /// A call of a subroutine that nobody has written.
+    #[error("there is no subroutine {label}: neither above this line nor in a file of that name")]
+    NoSubroutine {
+        /// The label.
+        label: Box<str>,
+    },
+    /// A file that should hold a subroutine, but does not.
+    #[error("the file of subroutine {label} {message}")]
+    BadFile {
+        /// The label.
+        label: Box<str>,
+        /// What is wrong.
+        message: Box<str>,
+    },
+    /// A subroutine inside a subroutine.
+    #[error("a subroutine cannot be defined while another one runs")]
+    NestedSubroutine,
+    /// Subroutines that call each other without end.
+    #[error("subroutines are called more than {bound} deep")]
+    TooDeep {
+        /// Largest depth.
+        bound: usize,
+    },
+    /// More arguments than local parameters.
+    #[error("a call has {given} arguments, but may have {bound} at most")]
+    TooManyArguments {
+        /// How many there are.
+        given: usize,
+        /// Most of them.
+        bound: usize,
+    },
+    /// A loop that seems to have no end.
+    #[error("more than {bound} lines of loops and subroutines were run; is this loop endless?")]
+    TooManySteps {
+        /// Most lines.
+        bound: u64,
+    },
+    /// A subroutine or a loop longer than may be remembered.
+    #[error("a loop or a subroutine is longer than {bound} bytes")]
+    TooLong {
+        /// Most bytes.
+        bound: usize,
+    },
+    /// A loop that is repeated a number of times that cannot be.
+    #[error("repetitions are {value}, but must be from 0 to {most}")]
+    BadRepetitions {
+        /// The number.
+        value: f64,
+        /// Most repetitions.
+        most: f64,
+    },
+}

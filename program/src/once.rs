@@ -1,0 +1,372 @@
+//! Codes that set the machine up: coordinate systems, offsets, tool length, stored points.
+//!
+//! Source: `G10`, `G28` to `G30.1`, `G43` to `G49`, `G53` to `G59.3` and `G92` to `G92.3` of RS274/NGC
+//! and LinuxCNC. Parameters hold offsets in mm. Not here: what offsets do to a point.
+
+use crate::block::{AXES, Block};
+use crate::codes::{Code, Group, Motion, Once, Side, ToolLength};
+use crate::compensation::Compensation;
+use crate::error::{Fault, Notice, Remark};
+use crate::lower::Lowering;
+use crate::machining_error::MachiningError;
+use crate::modal::{not_negative, whole};
+use crate::offsets::{SYSTEMS, axis_number, origin, rotation, set_system, system};
+use crate::place::Span;
+use crate::reason::Reason;
+use crate::tools::{LARGEST_TOOL, Tool};
+use std::collections::VecDeque;
+use toolglide_kinematics::{Feedrate, Move, Vector};
+
+/// Why most set-up has to wait.
+const COMPENSATED: &str = "while cutter compensation is on (G40 ends it)";
+
+impl Lowering {
+    /// Tool length, cutter compensation and coordinate system, in the order of execution.
+    pub(crate) fn set_up(
+        &mut self,
+        block: &Block,
+        remarks: &mut Vec<Remark>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        if self.compensation.is_some() {
+            let quiet = |group| Self::not_now(block, group, COMPENSATED);
+            let groups = [Group::Plane, Group::ToolLength, Group::Coordinates];
+            let plane_stays = block.plane.is_none_or(|plane| plane == self.modal.plane);
+            let fault = groups
+                .into_iter()
+                .filter(|&group| group != Group::Plane || !plane_stays)
+                .find_map(quiet);
+            let once = block.once.filter(|&once| once != Once::Dwell);
+            let once = once.and_then(|_| quiet(Group::NonModal));
+            if let Some(fault) = fault.or(once) {
+                return Err(fault);
+            }
+        }
+        if let Some(side) = block.side {
+            self.compensate(block, side, remarks, moves)?;
+        }
+        if let Some(length) = block.tool_length {
+            self.tool_length(block, length, remarks)?;
+        }
+        if let Some(number) = block.coordinates
+            && number != system(&self.parameters)
+        {
+            set_system(number, &mut self.parameters);
+            self.offsets.take_system(&self.parameters);
+            self.program = self.offsets.to_program(self.position);
+        }
+        Ok(())
+    }
+
+    /// Codes that hold for one block.
+    pub(crate) fn once(
+        &mut self,
+        block: &Block,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let Some(once) = block.once else {
+            return Ok(());
+        };
+        match once {
+            Once::Dwell => return Ok(()),
+            Once::MachineCoordinates => return self.check_machine_coordinates(block),
+            Once::SetData => self.set_data(block)?,
+            Once::GoHome(first) => return self.go_home(block, first, moves),
+            Once::StoreHome(first) => {
+                for (axis, number) in (u32::from(first)..).take(3).enumerate() {
+                    self.parameters.put(number, self.position[axis]);
+                }
+            }
+            Once::Shift => {
+                let mut shift = self.offsets.shift();
+                let mut any = block.has(b'E');
+                for (axis, letter) in AXES.into_iter().enumerate() {
+                    if let Some(length) = self.length(block, letter)? {
+                        shift[axis] += self.program[axis] - length;
+                        any = true;
+                    }
+                }
+                if !any {
+                    return Err(companion(block, Group::NonModal, "an axis word"));
+                }
+                self.offsets.set_shift(shift, &mut self.parameters);
+            }
+            Once::ClearShift => self.offsets.end_shift(true, &mut self.parameters),
+            Once::SuspendShift => self.offsets.end_shift(false, &mut self.parameters),
+            Once::RestoreShift => self.offsets.restore_shift(&mut self.parameters),
+        }
+        self.program = self.offsets.to_program(self.position);
+        Ok(())
+    }
+
+    fn check_machine_coordinates(&self, block: &Block) -> Result<(), Fault> {
+        let motion = block.motion.unwrap_or(self.modal.motion);
+        if !matches!(motion, Motion::Rapid | Motion::Line) {
+            return Err(companion(block, Group::NonModal, "G0 or G1"));
+        }
+        if self.modal.distance == crate::codes::Distance::Incremental {
+            let fault = Self::not_now(block, Group::NonModal, "with incremental distances (G91)");
+            return fault.map_or(Ok(()), Err);
+        }
+        Ok(())
+    }
+
+    /// `G28` and `G30`: to a stored point, by way of the point that the block names. With axis
+    /// words, only these axes go home.
+    fn go_home(
+        &mut self,
+        block: &Block,
+        first: u16,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let span = block
+            .taker(Group::NonModal)
+            .map_or(Span::default(), |(_, span)| span);
+        let home =
+            Vector::from_fn(|axis, _| self.parameters.get(u32::from(first) + axis_number(axis)));
+        let mut there = home;
+        if block.first_of(&AXES).is_some() {
+            let by_way = self.end(block)?;
+            self.go(by_way, Feedrate::RAPID, span, moves)?;
+            there = self.position;
+            for (axis, letter) in AXES.into_iter().enumerate() {
+                if block.has(letter) {
+                    there[axis] = home[axis];
+                }
+            }
+        }
+        for axis in 0..3 {
+            if !self.settings.axes[axis] {
+                there[axis] = self.position[axis];
+            }
+        }
+        let end = self.offsets.to_program(there);
+        self.go(end, Feedrate::RAPID, span, moves)
+    }
+
+    /// `G10`.
+    fn set_data(&mut self, block: &Block) -> Result<(), Fault> {
+        let Some(kind) = whole(block, b'L', "kind of data", 1, 20)? else {
+            return Err(missing(block, 'L'));
+        };
+        match kind {
+            1 | 10 => self.set_tool(block, kind == 10),
+            2 | 20 => self.set_system_data(block, kind == 20),
+            _ => {
+                let reason = Reason::NotSupported {
+                    code: Code::new(b'G', 100),
+                    what: "data other than tools (L1 L10) and coordinate systems (L2 L20)",
+                };
+                Err(Fault::new(block.span(b'L'), reason))
+            }
+        }
+    }
+
+    fn set_tool(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
+        let Some(number) = whole(block, b'P', "tool number", 0, LARGEST_TOOL)? else {
+            return Err(missing(block, 'P'));
+        };
+        let mut tool = self.tools.get(number).unwrap_or(Tool {
+            offset: Vector::zeros(),
+            diameter: 0.0,
+        });
+        if let Some(radius) = not_negative(block, b'R', "radius of the tool")? {
+            tool.diameter = 2.0 * self.modal.units.length(radius);
+        }
+        // Where the reference point of the machine is in the program.
+        let mut without = self.offsets;
+        without.set_tool(Vector::zeros());
+        let here = without.to_program(self.position);
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            if let Some(length) = self.length(block, letter)? {
+                tool.offset[axis] = if by_position {
+                    here[axis] - length
+                } else {
+                    length
+                };
+            }
+        }
+        self.tools.set(number, tool);
+        Ok(())
+    }
+
+    fn set_system_data(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
+        let Some(number) = whole(block, b'P', "coordinate system", 0, u32::from(SYSTEMS))? else {
+            return Err(missing(block, 'P'));
+        };
+        let number = match u8::try_from(number) {
+            Ok(0) | Err(_) => system(&self.parameters),
+            Ok(number) => number,
+        };
+        if let Some(degrees) = block.get(b'R') {
+            self.parameters.put(rotation(number), degrees % 360.0);
+        }
+        // Where the tool is in this system, if its origin were that of the machine.
+        let mut bare = self.offsets;
+        let mut scratch = [0.0; 3];
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            if let Some(length) = self.length(block, letter)? {
+                scratch[axis] = length;
+                let place = origin(number) + axis_number(axis);
+                if !by_position {
+                    self.parameters.put(place, length);
+                }
+            }
+        }
+        if by_position {
+            let degrees = self.parameters.get(rotation(number));
+            let mut target = bare.to_program(self.position);
+            bare.set_origin(Vector::zeros(), degrees);
+            for (axis, letter) in AXES.into_iter().enumerate() {
+                target[axis] = if block.has(letter) {
+                    scratch[axis]
+                } else {
+                    bare.to_program(self.position)[axis]
+                };
+            }
+            let origin_there = self.position - bare.to_machine(target);
+            for (axis, letter) in AXES.into_iter().enumerate() {
+                if block.has(letter) {
+                    let place = origin(number) + axis_number(axis);
+                    self.parameters.put(place, origin_there[axis]);
+                }
+            }
+        }
+        self.offsets.take_system(&self.parameters);
+        Ok(())
+    }
+
+    fn tool_length(
+        &mut self,
+        block: &Block,
+        kind: ToolLength,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
+        let given = |state: &Self| -> Result<Vector<3>, Fault> {
+            let mut offset = Vector::zeros();
+            for (axis, letter) in AXES.into_iter().enumerate() {
+                offset[axis] = state.length(block, letter)?.unwrap_or(0.0);
+            }
+            Ok(offset)
+        };
+        let tool = match kind {
+            ToolLength::Off => Vector::zeros(),
+            ToolLength::Table => {
+                self.tool_of(block, b'H', Group::ToolLength, remarks)?
+                    .offset
+            }
+            ToolLength::Given => {
+                if block.first_of(&AXES).is_none() {
+                    return Err(companion(block, Group::ToolLength, "an axis word"));
+                }
+                let mut offset = self.offsets.tool();
+                for (axis, letter) in AXES.into_iter().enumerate() {
+                    offset[axis] = self.length(block, letter)?.unwrap_or(offset[axis]);
+                }
+                offset
+            }
+            ToolLength::Added if block.has(b'H') => {
+                let more = self
+                    .tool_of(block, b'H', Group::ToolLength, remarks)?
+                    .offset;
+                self.offsets.tool() + more
+            }
+            ToolLength::Added => self.offsets.tool() + given(self)?,
+        };
+        self.offsets.set_tool(tool);
+        self.program = self.offsets.to_program(self.position);
+        Ok(())
+    }
+
+    /// The tool that a word names, or the one in the spindle.
+    fn tool_of(
+        &self,
+        block: &Block,
+        letter: u8,
+        group: Group,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Tool, Fault> {
+        let none = Tool {
+            offset: Vector::zeros(),
+            diameter: 0.0,
+        };
+        let written = whole(block, letter, "tool number", 0, LARGEST_TOOL)?;
+        let number = written.unwrap_or(self.loaded);
+        let span = match (written, block.taker(group)) {
+            (None, Some((_, span))) => span,
+            _ => block.span(letter),
+        };
+        if number == 0 {
+            return Ok(none);
+        }
+        if let Some(tool) = self.tools.get(number) {
+            return Ok(tool);
+        }
+        if self.tools.is_empty() {
+            remarks.push((span, Notice::NoToolTable { tool: number }));
+            return Ok(none);
+        }
+        let tool = number;
+        Err(Fault::new(span, MachiningError::NoSuchTool { tool }.into()))
+    }
+
+    fn compensate(
+        &mut self,
+        block: &Block,
+        side: Side,
+        remarks: &mut Vec<Remark>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let group = Group::CutterCompensation;
+        let left = match side {
+            Side::Off => {
+                if let Some(compensation) = &mut self.compensation {
+                    compensation.end(moves);
+                    if compensation.is_over() {
+                        self.compensation = None;
+                    }
+                }
+                return Ok(());
+            }
+            Side::Left | Side::LeftOf => true,
+            Side::Right | Side::RightOf => false,
+        };
+        if self.compensation.as_ref().is_some_and(|on| !on.is_ending()) {
+            return Self::not_now(block, group, COMPENSATED).map_or(Ok(()), Err);
+        }
+        let diameter = match side {
+            Side::LeftOf | Side::RightOf => match self.length(block, b'D')? {
+                Some(diameter) => diameter,
+                None => return Err(missing_of(block, group, 'D')),
+            },
+            _ => self.tool_of(block, b'D', group, remarks)?.diameter,
+        };
+        let radius = 0.5 * diameter.abs();
+        // A tool of negative diameter goes on the other side.
+        let left = left == (diameter >= 0.0);
+        let at = self
+            .compensation
+            .take()
+            .map_or(self.position, |on| on.position());
+        self.compensation = Some(Compensation::new(self.modal.plane, radius, left, at));
+        Ok(())
+    }
+}
+
+fn companion(block: &Block, group: Group, companion: &'static str) -> Fault {
+    let (code, span) = block
+        .taker(group)
+        .unwrap_or((Motion::Off.code(), Span::default()));
+    Fault::new(span, MachiningError::Companion { code, companion }.into())
+}
+
+fn missing(block: &Block, letter: char) -> Fault {
+    missing_of(block, Group::NonModal, letter)
+}
+
+fn missing_of(block: &Block, group: Group, letter: char) -> Fault {
+    let (code, span) = block
+        .taker(group)
+        .unwrap_or((Motion::Off.code(), Span::default()));
+    Fault::new(span, Reason::WordMissing { code, letter })
+}

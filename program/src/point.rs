@@ -1,0 +1,149 @@
+//! The point that the axis words of a block name, in the coordinates of the program.
+//!
+//! Source: `G90` `G91`, polar coordinates `@` `^` and `G53` of RS274/NGC and LinuxCNC. Not here:
+//! where the point is on the machine.
+
+use crate::block::{AXES, Block};
+use crate::codes::{Distance, Group, Once, Plane};
+use crate::error::Fault;
+use crate::lower::Lowering;
+use crate::machining_error::MachiningError;
+use crate::units::within_reach;
+use toolglide_kinematics::Vector;
+
+/// Letters of the rotary axes.
+pub(crate) const ROTARY: [u8; 3] = *b"ABC";
+
+/// Largest angle of a rotary axis or of polar coordinates, degrees: as far beyond use as it is far
+/// within what a float of 64 bits resolves.
+const LARGEST_ANGLE: f64 = 1e9;
+
+impl Lowering {
+    /// Where the axis words of a block lead.
+    pub(crate) fn end(&mut self, block: &Block) -> Result<Vector<3>, Fault> {
+        if block.once == Some(Once::MachineCoordinates) {
+            return self.end_on_machine(block);
+        }
+        let mut end = self.program;
+        if block.first_of(b"@^").is_some() {
+            end = self.polar(block)?;
+        }
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let Some(value) = block.get(letter) else {
+                continue;
+            };
+            let length = self.modal.units.length(value);
+            let coordinate = match self.modal.distance {
+                Distance::Absolute => length,
+                Distance::Incremental => self.program[axis] + length,
+            };
+            end[axis] = within_reach(char::from(letter), coordinate)
+                .map_err(|reason| Fault::new(block.span(letter), reason))?;
+        }
+        if block.rotary {
+            self.turn(block)?;
+        }
+        Ok(end)
+    }
+
+    /// A point in the coordinates of the machine.
+    fn end_on_machine(&self, block: &Block) -> Result<Vector<3>, Fault> {
+        let mut there = self.position;
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            if let Some(value) = block.get(letter) {
+                there[axis] = self
+                    .modal
+                    .units
+                    .bounded_length(char::from(letter), value)
+                    .map_err(|reason| Fault::new(block.span(letter), reason))?;
+            }
+        }
+        Ok(self.offsets.to_program(there))
+    }
+
+    /// Distance and angle from the origin, degrees; with `G91` both are added to what they are.
+    fn polar(&self, block: &Block) -> Result<Vector<3>, Fault> {
+        let letter = if block.has(b'@') { b'@' } else { b'^' };
+        let refuse = |what| {
+            let letter = char::from(letter);
+            let reason = MachiningError::Polar { letter, what };
+            Fault::new(
+                block.span(if letter == '@' { b'@' } else { b'^' }),
+                reason.into(),
+            )
+        };
+        if self.modal.plane != Plane::Xy {
+            return Err(refuse("the plane XY (G17)"));
+        }
+        if block.first_of(b"XY").is_some() {
+            return Err(refuse("to stand without X and Y"));
+        }
+        let here = [self.program[0], self.program[1]];
+        let mut distance = here[0].hypot(here[1]);
+        let mut angle = here[1].atan2(here[0]).to_degrees();
+        if distance == 0.0 && !(block.has(b'@') && block.has(b'^')) {
+            return Err(refuse("both @ and ^ at the origin, which has no angle"));
+        }
+        let incremental = self.modal.distance == Distance::Incremental;
+        if let Some(value) = block.get(b'@') {
+            let length = self.modal.units.length(value);
+            let sum = if incremental {
+                distance + length
+            } else {
+                length
+            };
+            distance =
+                within_reach('@', sum).map_err(|reason| Fault::new(block.span(b'@'), reason))?;
+        }
+        if let Some(value) = block.get(b'^') {
+            angle = if incremental { angle + value } else { value };
+            if angle.abs() > LARGEST_ANGLE {
+                return Err(refuse("an angle up to 1e9 degrees"));
+            }
+        }
+        let (sine, cosine) = angle.to_radians().sin_cos();
+        let mut end = self.program;
+        (end[0], end[1]) = (distance * cosine, distance * sine);
+        Ok(end)
+    }
+
+    /// Takes the words of rotary axes, degrees.
+    fn turn(&mut self, block: &Block) -> Result<(), Fault> {
+        for (axis, letter) in ROTARY.into_iter().enumerate() {
+            if let Some(value) = block.get(letter) {
+                let angle = match self.modal.distance {
+                    Distance::Absolute => value,
+                    Distance::Incremental => self.rotary[axis] + value,
+                };
+                if angle.abs() > LARGEST_ANGLE {
+                    let letter = char::from(letter);
+                    let what = "an angle up to 1e9 degrees";
+                    let reason = MachiningError::Polar { letter, what };
+                    return Err(Fault::new(block.span(ROTARY[axis]), reason.into()));
+                }
+                self.rotary[axis] = angle;
+            }
+        }
+        Ok(())
+    }
+
+    /// A length word in mm, if it stands in the block.
+    pub(crate) fn length(&self, block: &Block, letter: u8) -> Result<Option<f64>, Fault> {
+        block
+            .get(letter)
+            .map(|value| {
+                self.modal
+                    .units
+                    .bounded_length(char::from(letter), value)
+                    .map_err(|reason| Fault::new(block.span(letter), reason))
+            })
+            .transpose()
+    }
+
+    /// A refusal of the code of a group in the present state.
+    pub(crate) fn not_now(block: &Block, group: Group, state: &'static str) -> Option<Fault> {
+        block
+            .taker(group)
+            .map(|(code, span)| Fault::new(span, MachiningError::NotNow { code, state }.into()))
+    }
+}

@@ -1,0 +1,413 @@
+//! Splines as chords: quadratic, cubic and rational ones, in the plane XY.
+//!
+//! Source: `G5`, `G5.1` and `G5.2` `G5.3` of LinuxCNC. A Bezier curve lies within its control points;
+//! it is halved until they are within a share of the tolerance of a chord, and the moves keep the rest
+//! of the tolerance, so that the motion stays within the whole of it of the true curve. Not here:
+//! splines with knots of their own (`G6.2`).
+
+use crate::block::Block;
+use crate::codes::{Distance, Group, Motion, PathControl, Plane};
+use crate::error::Fault;
+use crate::lower::{Lowering, MOST_MOVES};
+use crate::machining_error::MachiningError;
+use crate::modal::whole;
+use crate::place::Span;
+use crate::reason::Reason;
+use crate::uses::motion_span;
+use std::collections::VecDeque;
+use toolglide_kinematics::{Feedrate, Move, Tolerance, Vector};
+
+/// Share of the tolerance that chords may use.
+pub(crate) const CHORD_SHARE: f64 = 0.1;
+
+/// How often one curve is halved at most: beyond a million chords there is no curve left.
+const MOST_HALVINGS: u32 = 20;
+
+/// Control points of one spline.
+const MOST_POINTS: usize = 10_000;
+
+/// Order of a rational spline where none is written, and the largest.
+const USUAL_ORDER: u32 = 3;
+const LARGEST_ORDER: u32 = 16;
+
+/// A point times its weight, and the weight.
+type Weighted = [f64; 3];
+
+/// A rational spline whose control points are being read.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Nurbs {
+    order: usize,
+    points: Vec<Weighted>,
+}
+
+impl Lowering {
+    /// `G5` and `G5.1`.
+    pub(crate) fn spline(
+        &mut self,
+        block: &Block,
+        motion: Motion,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        self.check_spline(block, motion)?;
+        let code = motion.code();
+        let span = motion_span(block);
+        let missing = |words| {
+            Fault::new(
+                span,
+                MachiningError::SplineIncomplete { code, words }.into(),
+            )
+        };
+        let start = [self.program[0], self.program[1]];
+        let end = self.end(block)?;
+        let last = [end[0], end[1]];
+        let from = |base: [f64; 2], offset: [f64; 2]| [base[0] + offset[0], base[1] + offset[1]];
+        let pair = |state: &Self, letters: [u8; 2]| -> Result<Option<[f64; 2]>, Fault> {
+            let first = state.length(block, letters[0])?;
+            let second = state.length(block, letters[1])?;
+            Ok((first.is_some() || second.is_some())
+                .then(|| [first.unwrap_or(0.0), second.unwrap_or(0.0)]))
+        };
+        let offset = pair(self, *b"IJ")?;
+        let points = if motion == Motion::Quadratic {
+            let offset = offset.ok_or_else(|| missing("I or J"))?;
+            self.spline_end = None;
+            vec![start, from(start, offset), last]
+        } else {
+            let (Some(p), Some(q)) = (self.length(block, b'P')?, self.length(block, b'Q')?) else {
+                return Err(missing("P and Q"));
+            };
+            // Without offsets a cubic goes on as the last one ended.
+            let going_on = self.spline_end.map(|[p, q]| [-p, -q]);
+            let offset = offset.or(going_on).ok_or_else(|| missing("I and J"))?;
+            self.spline_end = Some([p, q]);
+            vec![start, from(start, offset), from(last, [p, q]), last]
+        };
+        let curve: Vec<Weighted> = points
+            .iter()
+            .map(|point| [point[0], point[1], 1.0])
+            .collect();
+        let mut chords = Vec::new();
+        flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
+        self.follow(&chords, block, moves)
+    }
+
+    /// A control point of `G5.2`, or the beginning of a spline.
+    pub(crate) fn control_point(&mut self, block: &Block) -> Result<(), Fault> {
+        self.check_spline(block, Motion::Nurbs)?;
+        let span = motion_span(block);
+        let weight = block.get(b'P').unwrap_or(1.0);
+        if !(weight > 0.0 && weight.is_finite()) {
+            let (quantity, value) = ("weight", weight);
+            let reason = Reason::NotPositive { quantity, value };
+            return Err(Fault::new(block.span(b'P'), reason));
+        }
+        let order = whole(block, b'L', "order of the spline", 2, LARGEST_ORDER)?;
+        let weighted = |point: Vector<3>| [point[0] * weight, point[1] * weight, weight];
+        if self.nurbs.is_none() {
+            let order = order.unwrap_or(USUAL_ORDER) as usize;
+            self.nurbs = Some(Nurbs {
+                order,
+                points: vec![weighted(self.program)],
+            });
+        }
+        if block.first_of(b"XY").is_none() {
+            return Ok(());
+        }
+        let end = self.end(block)?;
+        self.program = end;
+        if let Some(nurbs) = &mut self.nurbs {
+            if nurbs.points.len() >= MOST_POINTS {
+                let bound = MOST_POINTS;
+                return Err(Fault::new(
+                    span,
+                    MachiningError::TooManyPoints { bound }.into(),
+                ));
+            }
+            nurbs.points.push(weighted(end));
+        }
+        Ok(())
+    }
+
+    /// `G5.3`: the spline is complete.
+    pub(crate) fn end_nurbs(
+        &mut self,
+        block: &Block,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let span = block
+            .taker(Group::Motion)
+            .map_or(Span::default(), |(_, span)| span);
+        let Some(nurbs) = self.nurbs.take() else {
+            return Err(Fault::new(span, MachiningError::NoSpline.into()));
+        };
+        let (given, order) = (nurbs.points.len(), nurbs.order);
+        if given < order {
+            let reason = MachiningError::TooFewPoints { given, order };
+            return Err(Fault::new(span, reason.into()));
+        }
+        let mut chords = Vec::new();
+        for curve in beziers(&nurbs.points, order) {
+            flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
+        }
+        self.program = self.offsets.to_program(self.position);
+        self.follow(&chords, block, moves)
+    }
+
+    /// Between `G5.2` and `G5.3` there are control points only.
+    pub(crate) fn check_open_spline(
+        &self,
+        block: &Block,
+        motion: Option<Motion>,
+    ) -> Result<(), Fault> {
+        let wrong = motion.is_some_and(|motion| motion != Motion::Nurbs);
+        let wrong = wrong || !block.is_plain() || block.motion.is_some_and(|m| m != Motion::Nurbs);
+        if self.nurbs.is_some() && wrong && !block.end_of_nurbs {
+            let span = motion_span(block);
+            return Err(Fault::new(span, MachiningError::OpenSpline.into()));
+        }
+        Ok(())
+    }
+
+    fn check_spline(&self, block: &Block, motion: Motion) -> Result<(), Fault> {
+        let state = if self.modal.plane != Plane::Xy {
+            "outside the plane XY (G17)"
+        } else if self.compensation.is_some() {
+            "while cutter compensation is on (G40 ends it)"
+        } else if block.first_of(b"Z@^ABC").is_some() {
+            "with words other than X and Y"
+        } else if motion != Motion::Quadratic && self.modal.distance == Distance::Incremental {
+            "with incremental distances (G91)"
+        } else {
+            return Ok(());
+        };
+        let code = motion.code();
+        Err(Fault::new(
+            motion_span(block),
+            MachiningError::NotNow { code, state }.into(),
+        ))
+    }
+
+    /// How far a chord may leave the true curve, mm.
+    pub(crate) fn chord_error(&self) -> f64 {
+        CHORD_SHARE * self.modal.tolerance.length()
+    }
+
+    /// Moves along chords, at the feedrate of a block.
+    pub(crate) fn follow(
+        &mut self,
+        chords: &[[f64; 2]],
+        block: &Block,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let span = motion_span(block);
+        let mut at = [self.program[0], self.program[1]];
+        let mut length = 0.0;
+        for point in chords {
+            length += (point[0] - at[0]).hypot(point[1] - at[1]);
+            at = *point;
+        }
+        let feedrate = self.feedrate(block, length)?;
+        if chords.len() > MOST_MOVES as usize {
+            let bound = MOST_MOVES;
+            let reason = MachiningError::TooManyMoves { bound };
+            return Err(Fault::new(span, reason.into()));
+        }
+        let whole = self.modal.tolerance;
+        self.modal.tolerance =
+            Tolerance::new(whole.length() * (1.0 - CHORD_SHARE)).unwrap_or(whole);
+        let outcome = self.chords(chords, feedrate, span, moves);
+        self.modal.tolerance = whole;
+        outcome
+    }
+
+    fn chords(
+        &mut self,
+        chords: &[[f64; 2]],
+        feedrate: Feedrate,
+        span: Span,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        for point in chords {
+            let end = Vector::<3>::new(point[0], point[1], self.program[2]);
+            self.go(end, feedrate, span, moves)?;
+        }
+        if self.modal.path_control == PathControl::ExactStop
+            && let Some(last) = moves.back_mut()
+        {
+            *last = last.with_exact_stop();
+        }
+        Ok(())
+    }
+}
+
+/// Appends points to which chords lead from the start of a curve, within `error` of it.
+fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut Vec<[f64; 2]>) {
+    let place = |point: &Weighted| [point[0] / point[2], point[1] / point[2]];
+    let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
+        return;
+    };
+    let (start, end) = (place(first), place(last));
+    let flat = curve
+        .iter()
+        .all(|point| off_chord(place(point), start, end) <= error);
+    if flat || halvings == 0 || into.len() > MOST_MOVES as usize {
+        into.push(end);
+        return;
+    }
+    let (before, after) = halved(curve);
+    flatten(&before, error, halvings - 1, into);
+    flatten(&after, error, halvings - 1, into);
+}
+
+/// Distance of a point from a chord.
+fn off_chord(point: [f64; 2], start: [f64; 2], end: [f64; 2]) -> f64 {
+    let along = [end[0] - start[0], end[1] - start[1]];
+    let from = [point[0] - start[0], point[1] - start[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = if square > 0.0 {
+        ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (from[0] - share * along[0]).hypot(from[1] - share * along[1])
+}
+
+/// De Casteljau's two halves of a Bezier curve.
+fn halved(curve: &[Weighted]) -> (Vec<Weighted>, Vec<Weighted>) {
+    let mut row = curve.to_vec();
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    while let (Some(first), Some(last)) = (row.first(), row.last()) {
+        before.push(*first);
+        after.push(*last);
+        row = row
+            .windows(2)
+            .map(|pair| std::array::from_fn(|axis| 0.5 * (pair[0][axis] + pair[1][axis])))
+            .collect();
+    }
+    after.reverse();
+    (before, after)
+}
+
+/// The Bezier curves of a clamped spline with equal steps between its inner knots, by inserting each
+/// inner knot until the curves part there (Boehm).
+fn beziers(points: &[Weighted], order: usize) -> Vec<Vec<Weighted>> {
+    let spans = points.len() + 1 - order;
+    let mut knots: Vec<f64> = Vec::new();
+    knots.extend(std::iter::repeat_n(0.0, order));
+    let mut inner = 0.0;
+    for _ in 1..spans {
+        inner += 1.0;
+        knots.push(inner);
+    }
+    knots.extend(std::iter::repeat_n(inner + 1.0, order));
+    let mut points = points.to_vec();
+    let degree = order - 1;
+    let mut knot = 0.0;
+    for _ in 1..spans {
+        knot += 1.0;
+        for _ in 1..degree {
+            insert(&mut points, &mut knots, degree, knot);
+        }
+    }
+    if degree == 0 {
+        return Vec::new();
+    }
+    (0..spans)
+        .map(|span| points[span * degree..=span * degree + degree].to_vec())
+        .collect()
+}
+
+fn insert(points: &mut Vec<Weighted>, knots: &mut Vec<f64>, degree: usize, knot: f64) {
+    let last = knots
+        .iter()
+        .rposition(|&other| other <= knot)
+        .unwrap_or(degree);
+    let mut next = Vec::with_capacity(points.len() + 1);
+    for index in 0..=points.len() {
+        let before = index.checked_sub(1).map(|before| points[before]);
+        let share = if index + degree <= last {
+            1.0
+        } else if index > last {
+            0.0
+        } else {
+            (knot - knots[index]) / (knots[index + degree] - knots[index])
+        };
+        let here = points.get(index).copied();
+        next.push(match (before, here) {
+            (Some(before), Some(here)) => {
+                std::array::from_fn(|axis| share * here[axis] + (1.0 - share) * before[axis])
+            }
+            (Some(point), None) | (None, Some(point)) => point,
+            (None, None) => [0.0, 0.0, 1.0],
+        });
+    }
+    *points = next;
+    knots.insert(last + 1, knot);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_circle_of_three_weights_stays_on_its_circle() {
+        let weight = 0.5_f64.sqrt();
+        let curve = [[1.0, 0.0, 1.0], [weight, weight, weight], [0.0, 1.0, 1.0]];
+        let mut chords = Vec::new();
+        flatten(&curve, 1e-4, MOST_HALVINGS, &mut chords);
+        assert!(chords.len() > 8, "{} chords", chords.len());
+        for point in &chords {
+            assert!((point[0].hypot(point[1]) - 1.0).abs() < 1e-12, "{point:?}");
+        }
+    }
+
+    #[test]
+    fn a_spline_in_pieces_is_the_spline_by_its_recursion() {
+        let points: Vec<Weighted> = [
+            [0.0, 0.0, 1.0],
+            [1.0, 3.0, 1.0],
+            [3.0, 4.0, 1.0],
+            [5.0, -1.0, 1.0],
+            [7.0, 2.0, 1.0],
+            [8.0, 0.0, 1.0],
+        ]
+        .to_vec();
+        for order in 2..=5 {
+            let curves = beziers(&points, order);
+            let spans = points.len() + 1 - order;
+            assert_eq!(curves.len(), spans, "spans of order {order}");
+            let clamp = |index: usize| index.saturating_sub(order - 1).min(spans);
+            let knots: Vec<f64> = (0..points.len() + order)
+                .map(|index| f64::from(u32::try_from(clamp(index)).unwrap()))
+                .collect();
+            for (span, curve) in curves.iter().enumerate() {
+                let (before, _) = halved(curve);
+                let middle = before[order - 1];
+                let at = f64::from(u32::try_from(span).unwrap()) + 0.5;
+                let mut expected = [0.0; 2];
+                for (index, point) in points.iter().enumerate() {
+                    let share = basis(&knots, index, order, at);
+                    expected[0] += share * point[0];
+                    expected[1] += share * point[1];
+                }
+                let off = (middle[0] - expected[0]).hypot(middle[1] - expected[1]);
+                assert!(off < 1e-12, "order {order}, span {span}: off by {off}");
+            }
+        }
+    }
+
+    /// The recursion of Cox and de Boor.
+    fn basis(knots: &[f64], index: usize, order: usize, at: f64) -> f64 {
+        if order == 1 {
+            return f64::from(u8::from(knots[index] <= at && at < knots[index + 1]));
+        }
+        let part = |from: f64, to: f64, share: f64| {
+            let length = to - from;
+            if length > 0.0 { share / length } else { 0.0 }
+        };
+        let (first, last) = (knots[index], knots[index + order - 1]);
+        let (second, end) = (knots[index + 1], knots[index + order]);
+        part(first, last, at - first) * basis(knots, index, order - 1, at)
+            + part(second, end, end - at) * basis(knots, index + 1, order - 1, at)
+    }
+}

@@ -1,0 +1,136 @@
+//! The parameters that tell the state of the reader, and those that set it.
+//!
+//! Source: the numbered and the predefined named parameters of LinuxCNC, lengths in the units of the
+//! program. Not here: parameters that a program makes up.
+
+use crate::arithmetic_error::ArithmeticError;
+use crate::codes::{Distance, FeedMode, Plane};
+use crate::error::Fault;
+use crate::expression::Parameter;
+use crate::lexer::Assignment;
+use crate::lower::Lowering;
+use crate::offsets::system;
+use crate::parameters::Values;
+use crate::units::Units;
+
+/// Parameters of the tool in the spindle: its number, its offset in force from X, its diameter.
+const TOOL: u32 = 5400;
+const TOOL_OFFSET: u32 = 5401;
+const DIAMETER: u32 = 5410;
+
+/// First parameter of the position in the program.
+const POSITION: u32 = 5420;
+
+/// Parameters from the first origin to the last rotation, and those of `G92`.
+const OFFSETS: std::ops::RangeInclusive<u32> = 5210..=5390;
+
+impl Values for Lowering {
+    fn numbered(&self, number: u32) -> f64 {
+        let units = self.modal.units;
+        match number {
+            TOOL => f64::from(self.loaded),
+            TOOL_OFFSET..=5403 => {
+                units.written(self.offsets.tool()[(number - TOOL_OFFSET) as usize])
+            }
+            DIAMETER => {
+                let tool = self.tools.get(self.loaded);
+                units.written(tool.map_or(0.0, |tool| tool.diameter))
+            }
+            POSITION..=5422 => units.written(self.program[(number - POSITION) as usize]),
+            _ => self.parameters.get(number),
+        }
+    }
+
+    fn named(&self, name: &str) -> Option<f64> {
+        self.parameters
+            .get_named(name)
+            .or_else(|| self.predefined(name))
+    }
+}
+
+impl Lowering {
+    /// A predefined parameter.
+    fn predefined(&self, name: &str) -> Option<f64> {
+        let modal = &self.modal;
+        let units = modal.units;
+        let truth = |holds: bool| f64::from(u8::from(holds));
+        Some(match name {
+            "_x" => units.written(self.program[0]),
+            "_y" => units.written(self.program[1]),
+            "_z" => units.written(self.program[2]),
+            "_a" => self.rotary[0],
+            "_b" => self.rotary[1],
+            "_c" => self.rotary[2],
+            "_feed" => units.written(modal.feedrate.unwrap_or(0.0)) * 60.0,
+            "_rpm" => modal.spindle_speed,
+            "_line" => f64::from(self.line),
+            "_motion_mode" => f64::from(modal.motion.code().tenths().unwrap_or(0)),
+            "_plane" => match modal.plane {
+                Plane::Xy => 170.0,
+                Plane::Zx => 180.0,
+                Plane::Yz => 190.0,
+            },
+            "_metric" => truth(units == Units::Millimeter),
+            "_imperial" => truth(units == Units::Inch),
+            "_absolute" => truth(modal.distance == Distance::Absolute),
+            "_incremental" => truth(modal.distance == Distance::Incremental),
+            "_inverse_time" => truth(modal.feed_mode == FeedMode::InverseTime),
+            "_units_per_minute" => truth(modal.feed_mode == FeedMode::PerMinute),
+            "_units_per_rev" => 0.0,
+            "_coord_system" => {
+                let system = system(&self.parameters);
+                f64::from(if system <= 6 {
+                    530 + 10 * u16::from(system)
+                } else {
+                    590 + u16::from(system) - 6
+                })
+            }
+            "_current_tool" => f64::from(self.loaded),
+            "_selected_tool" => f64::from(modal.tool),
+            "_return_mode" | "_retract_old_z" => truth(modal.return_to_start),
+            "_retract_r_plane" => truth(!modal.return_to_start),
+            "_ccomp" => match &self.compensation {
+                None => 400.0,
+                Some(compensation) => compensation.code(),
+            },
+            "_call_level" => f64::from(u32::try_from(self.saved.len() - 1).unwrap_or(0)),
+            "_task" => 0.0,
+            "_value" | "_value_returned" => 0.0,
+            _ => return None,
+        })
+    }
+
+    /// Gives a parameter its value; where it is an offset in force, the offset follows.
+    pub(crate) fn set_parameter(&mut self, assignment: &Assignment) -> Result<(), Fault> {
+        let value = assignment.value;
+        let outcome = match &assignment.parameter {
+            Parameter::Numbered(number) => {
+                let outcome = self.parameters.set(*number, value);
+                if OFFSETS.contains(number) {
+                    self.offsets.take_system(&self.parameters);
+                    self.program = self.offsets.to_program(self.position);
+                }
+                outcome
+            }
+            Parameter::Named(name) if self.predefined(name).is_some() => {
+                let name = name.clone();
+                Err(ArithmeticError::Predefined { name })
+            }
+            Parameter::Named(name) => self.parameters.set_named(name, value),
+        };
+        outcome.map_err(|reason| Fault::new(assignment.span, reason.into()))
+    }
+
+    /// What a subroutine gives back.
+    pub(crate) fn return_value(&mut self, value: Option<f64>) {
+        let returned = f64::from(u8::from(value.is_some()));
+        for (name, value) in [
+            ("_value", value.unwrap_or(0.0)),
+            ("_value_returned", returned),
+        ] {
+            // There is always room for these two once a program has few names; with very many the
+            // value stays 0.
+            let _ = self.parameters.set_named(name, value);
+        }
+    }
+}
