@@ -46,6 +46,7 @@ pub(crate) fn moves<const N: usize>(
         start: setup.start_point(),
         axes: setup.has_axes(),
         lenient: job.lenient,
+        ..Settings::new(setup.tolerance)
     };
     Moves {
         program: Program::new(source.reader, &source.name, settings),

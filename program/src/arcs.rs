@@ -151,7 +151,7 @@ fn center_by_offsets(
 ) -> Result<Vector<3>, Fault> {
     let modal = &state.modal;
     // Offsets are written in the coordinates of the program.
-    let start = state.offsets.to_program(start);
+    let start = state.offsets.in_program(start);
     let mut center = start;
     for axis in modal.plane.axes() {
         let letter = OFFSETS[axis];
@@ -172,7 +172,7 @@ fn center_by_offsets(
             (None, Distance::Incremental) => {}
         }
     }
-    Ok(state.offsets.to_machine(center))
+    Ok(state.offsets.on_machine(center))
 }
 
 /// The centre from a radius: of the two circles through both ends, the one that gives the shorter

@@ -216,7 +216,7 @@ impl Lowering {
     ) -> Result<(), Fault> {
         let end = self.end(block)?;
         let start = self.position;
-        let there = self.offsets.to_machine(end);
+        let there = self.offsets.on_machine(end);
         let tolerance = self.modal.tolerance;
         // Even where the move itself is refused, the next one starts at its end.
         (self.program, self.position) = (end, there);
@@ -278,7 +278,7 @@ impl Lowering {
                 MachiningError::TooManyMoves { bound }.into(),
             ));
         }
-        let there = self.offsets.to_machine(end);
+        let there = self.offsets.on_machine(end);
         (self.program, self.position) = (end, there);
         let step = Move::line_to(there, feedrate, self.modal.tolerance)
             .map_err(|error| Fault::new(span, Reason::Path(error)))?;

@@ -53,7 +53,7 @@ impl Lowering {
         {
             set_system(number, &mut self.parameters);
             self.offsets.take_system(&self.parameters);
-            self.program = self.offsets.to_program(self.position);
+            self.program = self.offsets.in_program(self.position);
         }
         Ok(())
     }
@@ -95,7 +95,7 @@ impl Lowering {
             Once::SuspendShift => self.offsets.end_shift(false, &mut self.parameters),
             Once::RestoreShift => self.offsets.restore_shift(&mut self.parameters),
         }
-        self.program = self.offsets.to_program(self.position);
+        self.program = self.offsets.in_program(self.position);
         Ok(())
     }
 
@@ -140,7 +140,7 @@ impl Lowering {
                 there[axis] = self.position[axis];
             }
         }
-        let end = self.offsets.to_program(there);
+        let end = self.offsets.in_program(there);
         self.go(end, Feedrate::RAPID, span, moves)
     }
 
@@ -176,7 +176,7 @@ impl Lowering {
         // Where the reference point of the machine is in the program.
         let mut without = self.offsets;
         without.set_tool(Vector::zeros());
-        let here = without.to_program(self.position);
+        let here = without.in_program(self.position);
         for (axis, letter) in AXES.into_iter().enumerate() {
             if let Some(length) = self.length(block, letter)? {
                 tool.offset[axis] = if by_position {
@@ -215,16 +215,16 @@ impl Lowering {
         }
         if by_position {
             let degrees = self.parameters.get(rotation(number));
-            let mut target = bare.to_program(self.position);
+            let mut target = bare.in_program(self.position);
             bare.set_origin(Vector::zeros(), degrees);
             for (axis, letter) in AXES.into_iter().enumerate() {
                 target[axis] = if block.has(letter) {
                     scratch[axis]
                 } else {
-                    bare.to_program(self.position)[axis]
+                    bare.in_program(self.position)[axis]
                 };
             }
-            let origin_there = self.position - bare.to_machine(target);
+            let origin_there = self.position - bare.on_machine(target);
             for (axis, letter) in AXES.into_iter().enumerate() {
                 if block.has(letter) {
                     let place = origin(number) + axis_number(axis);
@@ -274,7 +274,7 @@ impl Lowering {
             ToolLength::Added => self.offsets.tool() + given(self)?,
         };
         self.offsets.set_tool(tool);
-        self.program = self.offsets.to_program(self.position);
+        self.program = self.offsets.in_program(self.position);
         Ok(())
     }
 

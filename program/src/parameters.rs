@@ -147,6 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::float_cmp, reason = "values are stored, not computed")]
     fn a_subroutine_has_its_own_local_parameters_and_names() {
         let mut parameters = Parameters::new();
         parameters.put(1, 7.0);

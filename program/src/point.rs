@@ -58,7 +58,7 @@ impl Lowering {
                     .map_err(|reason| Fault::new(block.span(letter), reason))?;
             }
         }
-        Ok(self.offsets.to_program(there))
+        Ok(self.offsets.in_program(there))
     }
 
     /// Distance and angle from the origin, degrees; with `G91` both are added to what they are.

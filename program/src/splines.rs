@@ -149,7 +149,7 @@ impl Lowering {
         for curve in beziers(&nurbs.points, order) {
             flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
         }
-        self.program = self.offsets.to_program(self.position);
+        self.program = self.offsets.in_program(self.position);
         self.follow(&chords, block, moves)
     }
 

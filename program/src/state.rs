@@ -108,7 +108,7 @@ impl Lowering {
                 let outcome = self.parameters.set(*number, value);
                 if OFFSETS.contains(number) {
                     self.offsets.take_system(&self.parameters);
-                    self.program = self.offsets.to_program(self.position);
+                    self.program = self.offsets.in_program(self.position);
                 }
                 outcome
             }
