@@ -231,6 +231,20 @@ impl<const N: usize> Course<N> {
         Self::new(self.limits, legs, joins)
     }
 
+    /// The first and the second half of two legs or more, with a rest between.
+    pub(crate) fn halves(&self) -> (Self, Self) {
+        let middle = self.legs.len() / 2;
+        let part = |legs: &[Leg<N>], joins: &[Join]| Self {
+            legs: legs.to_vec(),
+            joins: joins.to_vec(),
+            ..*self
+        };
+        (
+            part(&self.legs[..middle], &self.joins[..middle - 1]),
+            part(&self.legs[middle..], &self.joins[middle..]),
+        )
+    }
+
     /// How many legs there are.
     #[must_use]
     pub fn legs(&self) -> usize {

@@ -7,6 +7,7 @@
 //! only crate that knows a convex solver.
 
 mod bound;
+mod certify;
 mod columns;
 mod course;
 mod durations;
@@ -16,14 +17,23 @@ mod grid;
 mod motion;
 mod optimum;
 mod pieces;
+mod planner;
 mod rows;
+mod score;
+mod sections;
 mod solve;
 mod straight;
 mod switches;
 mod tube;
+mod windows;
 
 pub use bound::lower_bound;
+pub use certify::{Certificate, certify};
 pub use course::{Class, Course};
 pub use error::ReferenceError;
 pub use optimum::{Optimum, Settings, optimum};
+pub use planner::{LONGEST, ReferencePlanner, plan};
+pub use score::{Held, Score, corner_penalty_ratio, hold, part, score};
+pub use sections::{Section, Sections, sections};
 pub use switches::leg_times;
+pub use windows::{Sampled, WHOLE, WINDOW, Window, Windows};

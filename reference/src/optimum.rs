@@ -20,6 +20,10 @@ const MARGIN: f64 = 2e-4;
 /// How far a Bezier point may be outside the tolerance after all, mm: rounding.
 const OUTSIDE: f64 = 1e-9;
 
+/// Intervals beyond which legs get fewer than was asked for: a program of so many takes the solver
+/// about a second.
+const MOST_INTERVALS: usize = 1200;
+
 /// How finely the optimum is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -51,6 +55,12 @@ impl Settings {
     pub fn with_least(mut self, least: usize) -> Self {
         self.least = least.max(1);
         self
+    }
+
+    /// The same, with fewer intervals on each of very many legs, so that all of them stay within
+    /// [`MOST_INTERVALS`]; two on each are never refused.
+    pub(crate) fn for_legs(self, legs: usize) -> Self {
+        self.with_least(self.least.min((MOST_INTERVALS / legs.max(1)).max(2)))
     }
 
     /// About how many intervals of time there are.
@@ -116,6 +126,7 @@ pub fn optimum<const N: usize>(
     starts: &[Vec<f64>],
     settings: &Settings,
 ) -> Result<Optimum<N>, ReferenceError> {
+    let settings = &settings.for_legs(course.legs());
     let mut optimum = upper_bound(course, starts, settings)?;
     let counts = share(&optimum.times, settings.intervals, settings.least);
     let grid = Grid::new(&optimum.times, &counts);

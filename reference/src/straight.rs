@@ -4,7 +4,7 @@
 //! what the convex program is tested against, and what is left when that fails. Not here: corners.
 
 use crate::course::{Course, Leg};
-use toolglide_kinematics::{Limits, Tangential};
+use toolglide_kinematics::{Limits, Piece, Sample, Serves, Tangential};
 
 /// The phases of a motion from rest to rest: jerk `+ 0 - 0 - 0 +`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,53 @@ impl Straight {
     /// How long it takes, s.
     pub(crate) fn duration(&self) -> f64 {
         4.0 * self.jerking + 2.0 * self.accelerating + self.cruising
+    }
+
+    /// The pieces along a leg.
+    pub(crate) fn pieces<const N: usize>(&self, leg: &Leg<N>) -> Vec<Piece<N>> {
+        let (t, hold, cruise) = (self.jerking, self.accelerating, self.cruising);
+        let phases = [
+            (t, 1.0),
+            (hold, 0.0),
+            (t, -1.0),
+            (cruise, 0.0),
+            (t, -1.0),
+            (hold, 0.0),
+            (t, 1.0),
+        ];
+        let serves = Serves {
+            first: leg.serves,
+            last: leg.serves,
+        };
+        let phases: Vec<_> = phases.into_iter().filter(|phase| phase.0 > 0.0).collect();
+        // The length for a jerk of one decides how large it is, so that rounding leaves no gap.
+        let unit = {
+            let (mut p, mut v, mut a) = (0.0, 0.0, 0.0);
+            for &(t, sign) in &phases {
+                p += (v + (0.5 * a + sign * t / 6.0) * t) * t;
+                v += (a + 0.5 * sign * t) * t;
+                a += sign * t;
+            }
+            p
+        };
+        let jerk = leg.length / unit;
+        let mut state = Sample::at_rest(leg.start);
+        let mut pieces = Vec::with_capacity(phases.len());
+        for (index, &(t, sign)) in phases.iter().enumerate() {
+            state.jerk = leg.direction * (sign * jerk);
+            let p = state.position
+                + (state.velocity + (state.acceleration * 0.5 + state.jerk * (t / 6.0)) * t) * t;
+            let end = if index + 1 == phases.len() {
+                leg.end
+            } else {
+                p
+            };
+            pieces.push(Piece::new(&state, t, end, serves));
+            state.velocity += (state.acceleration + state.jerk * (0.5 * t)) * t;
+            state.acceleration += state.jerk * t;
+            state.position = end;
+        }
+        pieces
     }
 }
 
