@@ -26,6 +26,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Plan a part program by every method and show them side by side.
     Compare(CompareArgs),
+    /// Hold every method against the time-optimal motion within the same limits and tolerance.
+    Score(ScoreArgs),
     /// Plan the examples of the dissertation and compare with what it prints.
     Reproduce(ReproduceArgs),
     /// List the machines there are, or describe one.
@@ -107,13 +109,37 @@ pub(crate) struct CompareArgs {
     /// The program and the limits.
     #[command(flatten)]
     pub(crate) job: JobArgs,
-    /// Which methods, as in kcs,exact-stop [default: all].
+    /// Which methods, as in kcs,exact-stop [default: all but the reference].
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
     pub(crate) methods: Vec<String>,
     /// The filters.
     #[command(flatten)]
     pub(crate) filters: FilterArgs,
     /// Draw the feedrates of the methods; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to score.
+#[derive(Debug, Args)]
+pub(crate) struct ScoreArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods, as in kcs,exact-stop [default: all but the reference itself].
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
+    pub(crate) methods: Vec<String>,
+    /// The filters.
+    #[command(flatten)]
+    pub(crate) filters: FilterArgs,
+    /// Intervals of time of the optimum, at least; more are finer and slower.
+    #[arg(long, value_name = "COUNT", default_value_t = 240,
+        value_parser = clap::value_parser!(u16).range(8..=2000))]
+    pub(crate) intervals: u16,
+    /// Prove that no motion around a single corner is faster, however it shares its time; slow.
+    #[arg(long)]
+    pub(crate) certify: bool,
+    /// Draw optimum and first method; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
 }

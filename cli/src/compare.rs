@@ -10,7 +10,7 @@ use crate::filters;
 use crate::output::OutputFile;
 use crate::pipeline::Lane;
 use crate::plan::{moves, title, warn};
-use crate::planner::{EXACT_STOP, METHODS, planner};
+use crate::planner::{EXACT_STOP, chosen, planner};
 use crate::plot::{Caption, Feeds, Picture};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -116,33 +116,4 @@ where
         .map_err(|reason| CliError::write("standard output", reason))?;
     let _ = err.write_all(comparison.complaint().as_bytes());
     Ok(if comparison.passes() { DONE } else { OUTSIDE })
-}
-
-/// The methods asked for, each once; all where none was.
-fn chosen(asked: &[String]) -> Vec<String> {
-    if asked.is_empty() {
-        return METHODS
-            .iter()
-            .map(|method| method.name.to_owned())
-            .collect();
-    }
-    let mut chosen = Vec::<String>::new();
-    for method in asked {
-        if !chosen.contains(method) {
-            chosen.push(method.clone());
-        }
-    }
-    chosen
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_method_named_twice_is_planned_once() {
-        let asked = ["kcs", "exact-stop", "kcs"].map(str::to_owned);
-        assert_eq!(chosen(&asked), ["kcs", "exact-stop"]);
-        assert_eq!(chosen(&[]).len(), METHODS.len());
-    }
 }

@@ -19,9 +19,11 @@ mod planner;
 mod plot;
 mod progress;
 mod reproduce;
+mod score;
 mod set_points;
 mod setup;
 mod source;
+mod standing;
 mod summary;
 mod table;
 mod travel;
@@ -70,6 +72,7 @@ where
         Command::Plan(args) => plan::plan(&args, out, err),
         Command::Verify(args) => verify::verify(&args, out, err),
         Command::Compare(args) => compare::compare(&args, out, err),
+        Command::Score(args) => score::score(&args, out, err),
         Command::Reproduce(args) => reproduce::reproduce(&args, out, err),
         Command::Machines(args) => machines::machines(&args, out).map(|()| DONE),
         Command::Completions { shell } => {

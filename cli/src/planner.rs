@@ -6,6 +6,7 @@ use crate::error::CliError;
 use crate::filters::refused;
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
+use toolglide_reference::ReferencePlanner;
 use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
 
 /// A method of planning.
@@ -52,6 +53,10 @@ pub const METHODS: &[MethodName] = &[
         summary: "feed pulses through moving averages, a full stop at the end of every move",
     },
     MethodName {
+        name: REFERENCE,
+        summary: "the time-optimal reference, for short programs: minutes for a hundred moves",
+    },
+    MethodName {
         name: EXACT_STOP,
         summary: "a full stop at the end of every move",
     },
@@ -59,6 +64,9 @@ pub const METHODS: &[MethodName] = &[
 
 /// The baseline of spline corners.
 const BEZIER: &str = "bezier";
+
+/// The time-optimal reference: so slow that it must be asked for.
+pub(crate) const REFERENCE: &str = "reference";
 
 /// The method that all others are measured by.
 pub(crate) const EXACT_STOP: &str = "exact-stop";
@@ -84,12 +92,33 @@ pub(crate) fn planner<const N: usize>(
     if method == BEZIER {
         return Ok(Box::new(BezierSmoothing::new(start, limits)));
     }
+    if method == REFERENCE {
+        return Ok(Box::new(ReferencePlanner::new(start, limits)));
+    }
     let names: Vec<_> = METHODS.iter().map(|method| method.name).collect();
     Err(CliError::Option {
         option: "--method",
         value: format!("\"{method}\""),
         bound: format!("there are {}", names.join(", ")),
     })
+}
+
+/// The methods asked for, each once; where none was, all but those that must be asked for.
+pub(crate) fn chosen(asked: &[String]) -> Vec<String> {
+    if asked.is_empty() {
+        return METHODS
+            .iter()
+            .filter(|method| method.name != REFERENCE)
+            .map(|method| method.name.to_owned())
+            .collect();
+    }
+    let mut chosen = Vec::<String>::new();
+    for method in asked {
+        if !chosen.contains(method) {
+            chosen.push(method.clone());
+        }
+    }
+    chosen
 }
 
 #[cfg(test)]
@@ -110,5 +139,19 @@ mod tests {
             planner("spline", Vector::zeros(), limits, None).is_err(),
             "unknown"
         );
+    }
+
+    #[test]
+    fn a_method_named_twice_is_planned_once() {
+        let asked = ["kcs", "exact-stop", "kcs"].map(str::to_owned);
+        assert_eq!(chosen(&asked), ["kcs", "exact-stop"]);
+    }
+
+    #[test]
+    fn the_reference_must_be_asked_for() {
+        let all = chosen(&[]);
+        assert_eq!(all.len(), METHODS.len() - 1);
+        assert!(!all.contains(&REFERENCE.to_owned()), "{all:?}");
+        assert_eq!(chosen(&[REFERENCE.to_owned()]), [REFERENCE]);
     }
 }

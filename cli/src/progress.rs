@@ -42,3 +42,34 @@ impl<R> Drop for Watched<R> {
         self.bar.finish_and_clear();
     }
 }
+
+/// A display of how many of some steps are done, which goes when it is dropped.
+#[derive(Debug)]
+pub(crate) struct Steps {
+    bar: ProgressBar,
+}
+
+impl Steps {
+    /// None of `count` steps is done.
+    pub(crate) fn new(count: usize) -> Self {
+        let bar = ProgressBar::new(count as u64);
+        let style =
+            ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} of about {duration}");
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        bar.tick();
+        Self { bar }
+    }
+
+    /// One more is done.
+    pub(crate) fn step(&self) {
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Steps {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

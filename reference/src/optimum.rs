@@ -11,6 +11,7 @@ use crate::formulation::Kind;
 use crate::grid::{Grid, share};
 use crate::motion::{Least, least_time};
 use crate::pieces::pieces;
+use crate::straight::{Straight, along};
 use toolglide_kinematics::{Plan, Trajectory};
 
 /// Share by which the tube of the program is narrower than the tolerance: what the precision of the
@@ -86,7 +87,8 @@ impl<const N: usize> Optimum<N> {
         &self.plan
     }
 
-    /// How long the motion lasts, s: a bound from above on the least time.
+    /// How long the motion lasts, s: a bound from above on the least time. On a single leg it is the
+    /// closed form, where that is shorter than what was solved.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.plan.duration()
@@ -130,10 +132,27 @@ pub fn optimum<const N: usize>(
     let mut optimum = upper_bound(course, starts, settings)?;
     let counts = share(&optimum.times, settings.intervals, settings.least);
     let grid = Grid::new(&optimum.times, &counts);
+    if let Some(straight) = straight(course)
+        && straight.duration() < optimum.duration()
+    {
+        // On one leg the grid is all that the program loses to the closed form.
+        optimum.times = vec![straight.duration()];
+        optimum.plan = straight;
+    }
     optimum.lower_bound = least_time(course, &grid, Kind::Relaxed, None, 0.0)
         .map(|least| least.bound(optimum.duration()))
         .ok_or_else(|| not_solved(course, &grid))?;
     Ok(optimum)
+}
+
+/// The motion exactly along a course of one leg.
+fn straight<const N: usize>(course: &Course<N>) -> Option<Plan<N>> {
+    let [leg] = course.legs.as_slice() else {
+        return None;
+    };
+    let mut plan = Plan::starting_at(leg.start);
+    plan.extend(Straight::over(leg.length, &along(&course.limits, leg)).pieces(leg));
+    Some(plan)
 }
 
 /// The motion alone, with a bound of 0.

@@ -60,7 +60,8 @@ pub fn corner_penalty_ratio(optimum: f64, duration: f64, straight_time: f64) -> 
 }
 
 /// Finds the optimum of a course and holds motions against it. The search starts from the fastest
-/// of them, so that no motion has an advantage that the optimum could not find.
+/// of them, so that no motion has an advantage that the optimum could not find. `done` is called after the
+/// optimum and after each motion.
 ///
 /// # Errors
 /// As [`optimum()`](optimum()).
@@ -68,6 +69,7 @@ pub fn hold<const N: usize>(
     course: &Course<N>,
     motions: &[Plan<N>],
     settings: &Settings,
+    done: &mut dyn FnMut(),
 ) -> Result<Score<N>, ReferenceError> {
     let times: Vec<Vec<f64>> = motions
         .iter()
@@ -85,13 +87,18 @@ pub fn hold<const N: usize>(
         starts.push(course.stopping_times());
     }
     let optimum = optimum(course, &starts, settings)?;
+    done();
     let motions = motions
         .iter()
         .zip(times)
-        .map(|(motion, leg_times)| Held {
-            duration: motion.duration(),
-            lower_bound: lower_bound(course, motion, settings.intervals()).ok(),
-            leg_times,
+        .map(|(motion, leg_times)| {
+            let held = Held {
+                duration: motion.duration(),
+                lower_bound: lower_bound(course, motion, settings.intervals()).ok(),
+                leg_times,
+            };
+            done();
+            held
         })
         .collect();
     Ok(Score {

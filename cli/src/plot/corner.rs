@@ -156,6 +156,12 @@ impl<const N: usize> CornerFinder<N> {
         self.pieces.push_back(*piece);
     }
 
+    /// How sharp the sharpest corner is; 0 without a corner.
+    pub(crate) fn sharpness(&self) -> f64 {
+        let leader = self.gathering.last().or(self.best.as_ref());
+        leader.map_or(0.0, |leader| leader.rank)
+    }
+
     /// The sharpest corner of all.
     pub(crate) fn finish(mut self) -> Option<SharpCorner<N>> {
         self.gathering.pop().or(self.best)

@@ -94,12 +94,8 @@ impl Feeds {
             .collect();
         let mut canvas = Canvas::new(WIDTH, bottom + BELOW);
         caption.draw(&mut canvas);
-        let duration = self.times.iter().copied().fold(0.0, f64::max);
-        let fastest = (0..count)
-            .map(|motion| self.curves.peak(motion))
-            .fold(0.0, f64::max);
-        let too_fast = self.programmed > 0.0 && fastest > FAR_RAPID * self.programmed;
-        let most = if too_fast { self.programmed } else { fastest };
+        let (duration, fastest, most) = self.extent();
+        let too_fast = most < fastest;
         let (unit, unit_name) = time_unit(duration);
         let or_one = |value: f64| if value > 0.0 { value } else { 1.0 };
         let chart = |y, height| Chart {
@@ -129,6 +125,52 @@ impl Feeds {
         }
         lowest.draw_name_across(&mut canvas, &format!("time, {unit_name}"));
         canvas.finish()
+    }
+
+    /// The longest duration, the largest speed, and the largest that is worth its room.
+    fn extent(&self) -> (f64, f64, f64) {
+        let duration = self.times.iter().copied().fold(0.0, f64::max);
+        let fastest = (0..self.names.len())
+            .map(|motion| self.curves.peak(motion))
+            .fold(0.0, f64::max);
+        let too_fast = self.programmed > 0.0 && fastest > FAR_RAPID * self.programmed;
+        (
+            duration,
+            fastest,
+            if too_fast { self.programmed } else { fastest },
+        )
+    }
+
+    /// All motions in one chart, in a part of another drawing, with what each is called and takes.
+    pub(super) fn draw_all(&self, canvas: &mut Canvas, x: f64, y: f64, width: f64, height: f64) {
+        let (duration, _, most) = self.extent();
+        let or_one = |value: f64| if value > 0.0 { value } else { 1.0 };
+        let chart = Chart {
+            x,
+            y,
+            width,
+            height,
+            across: (0.0, or_one(duration)),
+            upward: (0.0, or_one(HEADROOM * most)),
+        };
+        let (unit, unit_name) = time_unit(duration);
+        chart.draw_grid(canvas, unit, true);
+        let order: Vec<usize> = (0..self.names.len()).rev().collect();
+        self.draw_motions(canvas, &chart, &order);
+        chart.draw_frame(canvas, "Feedrate along the path, mm/s");
+        chart.draw_name_across(canvas, &format!("time, {unit_name}"));
+        let told: Vec<String> = self
+            .names
+            .iter()
+            .zip(&self.times)
+            .map(|(name, time)| format!("{name} {time:.4} s"))
+            .collect();
+        let entries: Vec<_> = told
+            .iter()
+            .enumerate()
+            .map(|(motion, name)| (name.as_str(), color::of_method(motion), false))
+            .collect();
+        chart.draw_legend(canvas, &entries);
     }
 
     fn draw_motions(&self, canvas: &mut Canvas, chart: &Chart, motions: &[usize]) {

@@ -6,6 +6,7 @@
 mod canvas;
 mod chart;
 mod color;
+mod contrast;
 mod corner;
 mod curve;
 mod envelope;
@@ -24,6 +25,7 @@ use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Move, Piece, Sample, Vector};
 use trace::Trace;
 
+pub(crate) use contrast::Contrast;
 pub(crate) use feeds::Feeds;
 pub(crate) use picture::Picture;
 pub(crate) use sheet::Caption;

@@ -42,10 +42,8 @@ impl<const N: usize> Plot<N> {
             corner.as_ref(),
             &self.letters,
             &mut canvas,
-            64.0,
-            732.0,
-            660.0,
-            412.0,
+            [64.0, 732.0, 660.0, 412.0],
+            "violet: motion",
         );
         canvas.finish()
     }

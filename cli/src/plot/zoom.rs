@@ -18,16 +18,45 @@ const POINTS: u32 = 48;
 /// Tolerances below this are shown in µm, mm.
 const MICROMETRES: f64 = 0.25;
 
-/// Draws the corner into a part of the drawing; without one it says so.
+/// Where points near a corner stand on the drawing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View<const N: usize> {
+    chart: Chart,
+    point: Vector<N>,
+    plane: [usize; 2],
+    scale: f64,
+}
+
+impl<const N: usize> View<N> {
+    fn at(&self, point: Vector<N>) -> (f64, f64) {
+        let offset = (point - self.point) * self.scale;
+        self.chart.at(offset[self.plane[0]], offset[self.plane[1]])
+    }
+
+    /// Draws the motion near a corner.
+    pub(crate) fn draw_motion(&self, corner: &SharpCorner<N>, color: &str, canvas: &mut Canvas) {
+        let chart = &self.chart;
+        canvas.clip(chart.x, chart.y, chart.width, chart.height);
+        let style = format!(
+            "fill=\"none\" stroke=\"{color}\" stroke-width=\"2.6\" stroke-linejoin=\"round\""
+        );
+        canvas.path(
+            &through(motion(corner).map(|(point, _)| self.at(point))),
+            &style,
+        );
+        canvas.unclip();
+    }
+}
+
+/// Draws the corner into a part of the drawing; without one it says so. What it gives places other
+/// motions on the same drawing.
 pub(crate) fn draw<const N: usize>(
     corner: Option<&SharpCorner<N>>,
     letters: &[char],
     canvas: &mut Canvas,
-    x: f64,
-    y: f64,
-    width: f64,
-    height: f64,
-) {
+    [x, y, width, height]: [f64; 4],
+    colors: &str,
+) -> Option<View<N>> {
     let mut chart = Chart {
         x,
         y,
@@ -46,7 +75,7 @@ pub(crate) fn draw<const N: usize>(
             "fill=\"#4a525b\"",
             "the path has no corner",
         );
-        return;
+        return None;
     };
     let tolerance = corner.tolerance.length();
     let (scale, unit) = if tolerance < MICROMETRES {
@@ -55,10 +84,6 @@ pub(crate) fn draw<const N: usize>(
         (1.0, "mm")
     };
     let plane = plane(corner);
-    let place = |point: Vector<N>| {
-        let offset = (point - corner.point) * scale;
-        (offset[plane[0]], offset[plane[1]])
-    };
     let inward = corner.outgoing - corner.incoming;
     let middle = inward / inward.norm() * (INSIDE * tolerance * scale);
     let half = WINDOW * tolerance * scale;
@@ -67,10 +92,13 @@ pub(crate) fn draw<const N: usize>(
     let chart = chart.with_equal_scales();
     chart.draw_grid(canvas, 1.0, true);
     canvas.clip(x, y, width, height);
-    let on_chart = |point: Vector<N>| {
-        let (across, upward) = place(point);
-        chart.at(across, upward)
+    let view = View {
+        chart,
+        point: corner.point,
+        plane,
+        scale,
     };
+    let on_chart = |point: Vector<N>| view.at(point);
     let ring = format!(
         "fill=\"{0}\" fill-opacity=\"0.06\" stroke=\"{0}\" stroke-width=\"1.4\" \
          stroke-dasharray=\"7 5\"",
@@ -89,15 +117,10 @@ pub(crate) fn draw<const N: usize>(
         &through(corner.path.iter().map(|&point| on_chart(point))),
         &style,
     );
+    canvas.unclip();
+    view.draw_motion(corner, color::MOTION, canvas);
+    canvas.clip(x, y, width, height);
     let motion: Vec<(Vector<N>, bool)> = motion(corner).collect();
-    let style = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"2.6\" stroke-linejoin=\"round\"",
-        color::MOTION
-    );
-    canvas.path(
-        &through(motion.iter().map(|&(point, _)| on_chart(point))),
-        &style,
-    );
     // The motion may come by again later; what counts is how it turns here.
     let turning = motion.iter().filter(|point| point.1);
     let nearest = turning.map(|point| point.0).min_by(|one, two| {
@@ -135,11 +158,12 @@ pub(crate) fn draw<const N: usize>(
     chart.draw_remark(canvas, &remark);
     let letter = |axis: usize| letters.get(axis).copied().unwrap_or('?');
     let name = format!(
-        "{} across, {} up, from the corner; grey: programmed, violet: motion, red: tolerance",
+        "{} across, {} up, from the corner; grey: programmed, {colors}, red: tolerance",
         letter(plane[0]),
         letter(plane[1])
     );
     chart.draw_name_across(canvas, &name);
+    Some(view)
 }
 
 /// Points of the motion, close enough to look like a curve where the window is, and whether they
