@@ -4,24 +4,37 @@
 //! Programs list the machines with [`models`] and build them by name with [`find`]; a controller
 //! that is linked where [`inventory`] cannot work lists its models itself in a [`Registry`].
 
+mod arm_6r;
 mod config;
+mod corexy;
+mod delta;
+mod elbow;
 mod error;
 mod file;
 mod gantry;
 mod geometry;
+mod head_bc;
+mod head_table_bc;
 mod registry;
+mod scara;
 mod structure;
 mod swivel;
 mod table_ac;
 mod table_bc;
 
+pub use arm_6r::ARM_6R;
 pub use config::{AxisConfig, MachineConfig, ModeConfig};
+pub use corexy::COREXY;
+pub use delta::DELTA;
 pub use error::MachineError;
 pub use file::{from_toml, load, schema};
 pub use gantry::GANTRY;
 pub use geometry::{Distance, WORKPIECE};
+pub use head_bc::HEAD_BC;
+pub use head_table_bc::HEAD_TABLE_BC;
 pub use inventory;
 pub use registry::{MachineModel, Registry, find, models};
+pub use scara::SCARA;
 pub use structure::{Assembly, Branches, Structure, upright};
 pub use table_ac::TABLE_AC;
 pub use table_bc::TABLE_BC;

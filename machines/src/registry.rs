@@ -107,7 +107,17 @@ mod tests {
         let names: Vec<_> = models().iter().map(|model| model.name).collect();
         assert_eq!(
             names,
-            ["gantry", "table-ac", "table-bc"],
+            [
+                "arm-6r",
+                "corexy",
+                "delta",
+                "gantry",
+                "head-bc",
+                "head-table-bc",
+                "scara",
+                "table-ac",
+                "table-bc"
+            ],
             "linked and sorted"
         );
     }
@@ -117,7 +127,7 @@ mod tests {
         let refused = find("lathe").unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "machine \"lathe\" is not registered; registered: gantry, table-ac, table-bc"
+            "machine \"lathe\" is not registered; registered: arm-6r, corexy, delta, gantry, head-bc, head-table-bc, scara, table-ac, table-bc"
         );
     }
 

@@ -6,11 +6,15 @@
 
 use crate::config::{AxisConfig, MachineConfig, file_unit};
 use crate::error::MachineError;
-use toolglide_kinematics::numeric::{ANGLE_SLACK, LENGTH_SLACK, UNIT_LENGTH_ERROR};
+use toolglide_kinematics::numeric::{ANGLE_SLACK, LENGTH_SLACK};
 use toolglide_kinematics::{
     Axis, AxisKind, AxisVector, KinematicsError, MOST_SOLUTIONS, MachineKinematics, SamplePeriod,
     Solutions, Tolerance, ToolPose, Vector,
 };
+
+/// A tool that leans by less than this points straight up, rad: some thousand roundings of a unit
+/// vector.
+const UPRIGHT: f64 = 1e-12;
 
 /// The map between the `N` joints of a machine and the pose of its tool.
 ///
@@ -77,7 +81,7 @@ impl<const N: usize> Branches<N> {
 /// # Errors
 /// [`KinematicsError::Unreachable`] for any other orientation.
 pub fn upright(pose: &ToolPose) -> Result<Vector<3>, KinematicsError> {
-    if (pose.orientation() - Vector::<3>::z()).norm() > UNIT_LENGTH_ERROR {
+    if (pose.orientation() - Vector::<3>::z()).norm() > UPRIGHT {
         return Err(KinematicsError::Unreachable {
             reason: "no axis tilts the tool",
         });

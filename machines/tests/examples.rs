@@ -1,12 +1,13 @@
 //! The machine files that come with the project can be built.
 
 use std::path::Path;
-use toolglide_machines::{find, load};
+use toolglide_kinematics::{AxisVector, ToolPose, Vector};
+use toolglide_machines::{find, load, models};
 
 #[test]
 fn every_example_machine_can_be_built() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/machines"));
-    let mut built = 0;
+    let mut built = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let file = entry.unwrap().path();
         let config = load(&file).unwrap();
@@ -17,9 +18,19 @@ fn every_example_machine_can_be_built() {
             "{}",
             file.display()
         );
-        built += 1;
+        let zero = ToolPose::upright(Vector::zeros()).unwrap();
+        let near = AxisVector::zeros(machine.axes().len());
+        let axes = machine.inverse(&zero, &near);
+        assert!(axes.is_ok(), "{}: {axes:?}", file.display());
+        built.push(config.model);
     }
-    assert!(built >= 3, "{built} examples");
+    for model in models() {
+        assert!(
+            built.iter().any(|name| name == model.name),
+            "{} has no example",
+            model.name
+        );
+    }
 }
 
 #[test]
