@@ -1,5 +1,6 @@
 //! The arm of six axes against another implementation of the same paper, which shares no line with it.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 #![allow(
     clippy::cast_possible_truncation,
     reason = "random bits are cut into halves"
