@@ -23,6 +23,9 @@ const SHORTEST_HALF: f64 = 2e-5;
 /// What the last coefficients may add to the jerk, as a share of the limit.
 const TRUNCATION: f64 = 1e-5;
 
+/// What the last coefficients may add to a position, mm and rad: far below what may jump.
+const TRUNCATION_LENGTH: f64 = 1e-10;
+
 /// Derivatives of the position of one axis at one instant, the position first.
 pub(super) type Derivatives = [f64; 4];
 
@@ -94,7 +97,8 @@ impl<'m> Follower<'m> {
         let series: Vec<_> = self.values.iter().map(coefficients).collect();
         let scale = TRUNCATION * half.powi(3) / last_jerk();
         let resolved = series.iter().zip(&self.axes).all(|(series, axis)| {
-            series[NODES - 1].abs().max(series[NODES - 2].abs()) < scale * axis.limits.jerk()
+            let last = series[NODES - 1].abs().max(series[NODES - 2].abs());
+            last < (scale * axis.limits.jerk()).min(TRUNCATION_LENGTH)
         });
         if !resolved && 0.5 * (end - begin) > SHORTEST_HALF {
             self.near = before;

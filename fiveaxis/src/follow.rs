@@ -1,0 +1,113 @@
+//! What the axes of a machine do behind a piece of tool motion.
+//!
+//! Source: central differences of the inverse kinematics along the polynomials of the piece, which
+//! go on beyond its ends, so that a piece may be as short as it likes. Not here: what is done about
+//! it.
+
+use toolglide_kinematics::{Axis, AxisVector, KinematicsError, MachineKinematics, ToolPiece};
+
+/// Distance of the instants of a difference, s: the rounding of positions of a metre leaves less than
+/// 1 mm/s³ of a jerk, and a motion that changes within such a time is none for a machine.
+const STEP: f64 = 1e-3;
+
+/// Differences of seven instants: velocity, acceleration and jerk.
+const VELOCITY: [f64; 7] = [-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0];
+const VELOCITY_SCALE: f64 = 60.0;
+const ACCELERATION: [f64; 7] = [2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0];
+const ACCELERATION_SCALE: f64 = 180.0;
+const JERK: [f64; 7] = [1.0, -8.0, 13.0, 0.0, -13.0, 8.0, -1.0];
+const JERK_SCALE: f64 = 8.0;
+
+/// Longest time and largest angle between two instants looked at, s and rad.
+const LONGEST: f64 = 0.02;
+const WIDEST: f64 = 0.05;
+
+/// The limit that is exceeded most: by how much, on which axis, and which.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Worst {
+    /// Value as a share of the limit.
+    pub(crate) share: f64,
+    pub(crate) axis: usize,
+    /// 0 for velocity, 1 for acceleration, 2 for jerk.
+    pub(crate) order: usize,
+}
+
+impl Worst {
+    pub(crate) const NONE: Self = Self {
+        share: 0.0,
+        axis: 0,
+        order: 0,
+    };
+
+    pub(crate) fn raise(&mut self, axis: usize, limits: &Axis, derivatives: [f64; 3]) {
+        let bounds = [
+            limits.limits.velocity(),
+            limits.limits.acceleration(),
+            limits.limits.jerk(),
+        ];
+        for (order, (value, bound)) in derivatives.iter().zip(bounds).enumerate() {
+            let share = value.abs() / bound;
+            if share > self.share {
+                *self = Self { share, axis, order };
+            }
+        }
+    }
+
+    /// What the limit is called.
+    pub(crate) fn quantity(&self) -> &'static str {
+        ["velocity", "acceleration", "jerk"][self.order.min(2)]
+    }
+}
+
+/// The limit of an axis that a piece comes nearest to, or exceeds most.
+pub(crate) fn worst(
+    machine: &dyn MachineKinematics,
+    axes: &[Axis],
+    piece: &ToolPiece,
+    near: &AxisVector,
+) -> Result<Worst, KinematicsError> {
+    let swing: f64 = piece
+        .turns
+        .iter()
+        .map(|turn| (turn.angle[1] * piece.duration).abs())
+        .sum();
+    let parts = (piece.duration / LONGEST)
+        .max(swing / WIDEST)
+        .ceil()
+        .clamp(2.0, 64.0);
+    let mut worst = Worst::NONE;
+    let mut near = *near;
+    let mut part = 0.0;
+    while part <= parts {
+        let time = piece.duration * part / parts;
+        near = machine.inverse(&piece.extended(time), &near)?;
+        let mut around = [near; 7];
+        for (offset, axes) in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]
+            .iter()
+            .zip(&mut around)
+        {
+            *axes = machine.inverse(&piece.extended(time + offset * STEP), &near)?;
+        }
+        for (axis, limits) in axes.iter().enumerate() {
+            let sum = |weights: &[f64; 7]| {
+                // Differences from the middle keep the digits of large positions.
+                weights
+                    .iter()
+                    .zip(&around)
+                    .map(|(weight, at)| weight * (at[axis] - near[axis]))
+                    .sum::<f64>()
+            };
+            worst.raise(
+                axis,
+                limits,
+                [
+                    sum(&VELOCITY) / (VELOCITY_SCALE * STEP),
+                    sum(&ACCELERATION) / (ACCELERATION_SCALE * STEP.powi(2)),
+                    sum(&JERK) / (JERK_SCALE * STEP.powi(3)),
+                ],
+            );
+        }
+        part += 1.0;
+    }
+    Ok(worst)
+}

@@ -1,0 +1,562 @@
+//! From legs of poses to pieces of motion, a stretch between two rests at a time.
+//!
+//! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
+
+use crate::axis_limits::{AIM, Stretch, least_duration, relax};
+use crate::block::PoseBlock;
+use crate::corner::PoseCorner;
+use crate::error::FiveAxisError;
+use crate::follow::{Worst, worst};
+use crate::joint::{JointBlock, JointStretch};
+use crate::lay::{intervals, knots, piece, rest};
+use crate::settings::{PoseMethod, PoseSettings};
+use crate::steps::Steps;
+use crate::timing::{corners, time};
+use std::collections::VecDeque;
+use toolglide_fir::FilterChain;
+use toolglide_kinematics::{
+    AxesPiece, Axis, AxisVector, MachineKinematics, PoseFeed, PoseLeg, PosePath, PosePiece,
+    ToolPose,
+};
+
+/// Most legs of a stretch: a longer one is planned in parts that rest in between, so that memory is
+/// bounded. A rest every four thousand moves costs less than a ten-thousandth of the time.
+const MOST_LEGS: usize = 4096;
+
+/// Angle of the tool between two positions of the axes along a block, rad, and length of the tip, mm.
+const SHARE_ANGLE: f64 = 0.05;
+const SHARE_LENGTH: f64 = 5.0;
+
+/// Most such positions of a block.
+const MOST_SHARES: f64 = 48.0;
+
+/// Factors by which a corner is taken more gently at once.
+const LEAST_EASING: f64 = 1.08;
+const MOST_EASING: f64 = 2.0;
+
+/// A corner taken more gently than this is a stop.
+const LEAST_SCALE: f64 = 0.05;
+
+/// Slower than this factor is worth a word.
+const NOTABLE: f64 = 1.001;
+
+/// A move that is slower than its feedrate, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slowdown {
+    /// Number of the move, counted from 0.
+    pub leg: u32,
+    /// Line of the program; 0 for none.
+    pub line: u32,
+    /// How many times as long it takes.
+    pub factor: f64,
+    /// Letter of the axis whose limit is met.
+    pub axis: char,
+    /// Which limit of it.
+    pub quantity: &'static str,
+}
+
+/// Plans pose motion: legs in, pieces out.
+///
+/// A stretch of legs is planned when it is known to end at rest: at an exact stop, a dwell, the end
+/// of the path, or after some thousand legs.
+pub struct PosePlanner<'m> {
+    machine: &'m dyn MachineKinematics,
+    axes: Vec<Axis>,
+    settings: PoseSettings,
+    at: AxisVector,
+    pose: ToolPose,
+    pending: Vec<(u32, PoseLeg)>,
+    pieces: VecDeque<PosePiece>,
+    slowdowns: Vec<Slowdown>,
+    count: u32,
+    finished: bool,
+}
+
+impl std::fmt::Debug for PosePlanner<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PosePlanner")
+            .field("settings", &self.settings)
+            .field("at", &self.at)
+            .field("count", &self.count)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'m> PosePlanner<'m> {
+    /// A planner for a machine at rest at the axis positions `start`, with the limits of `axes`.
+    ///
+    /// # Errors
+    /// [`FiveAxisError::Machine`] when the machine cannot stand there.
+    pub fn new(
+        machine: &'m dyn MachineKinematics,
+        axes: Vec<Axis>,
+        start: AxisVector,
+        settings: PoseSettings,
+    ) -> Result<Self, FiveAxisError> {
+        let pose = machine
+            .forward(&start)
+            .map_err(|reason| FiveAxisError::Machine { index: 0, reason })?;
+        Ok(Self {
+            machine,
+            axes,
+            settings,
+            at: start,
+            pose,
+            pending: Vec::new(),
+            pieces: VecDeque::new(),
+            slowdowns: Vec::new(),
+            count: 0,
+            finished: false,
+        })
+    }
+
+    /// Takes the next leg of the path.
+    ///
+    /// # Errors
+    /// [`FiveAxisError`] names the leg that cannot be planned; what was planned before stays valid.
+    pub fn push(&mut self, leg: PoseLeg) -> Result<(), FiveAxisError> {
+        let index = self.count;
+        if self.finished {
+            return Err(FiveAxisError::Finished { index });
+        }
+        self.count = self.count.saturating_add(1);
+        let is_axes = |leg: &PoseLeg| matches!(leg.path, PosePath::Axes { .. });
+        if let Some((_, before)) = self.pending.last()
+            && is_axes(before) != is_axes(&leg)
+        {
+            self.plan()?;
+        }
+        if let PosePath::Dwell { duration } = leg.path {
+            self.plan()?;
+            if duration > 0.0 {
+                self.pieces.push_back(rest(self.pose, duration, index));
+            }
+            return Ok(());
+        }
+        let stops = leg.stop;
+        self.pending.push((index, leg));
+        if stops || self.pending.len() >= MOST_LEGS {
+            self.plan()?;
+        }
+        Ok(())
+    }
+
+    /// Says that no leg follows: the motion comes to rest at the end of the last one.
+    ///
+    /// # Errors
+    /// As [`PosePlanner::push`].
+    pub fn finish(&mut self) -> Result<(), FiveAxisError> {
+        self.finished = true;
+        self.plan()
+    }
+
+    /// The next piece of finished motion: in order, contiguous, never taken back.
+    pub fn pull(&mut self) -> Option<PosePiece> {
+        self.pieces.pop_front()
+    }
+
+    /// Moves that are slower than their feedrates, in path order; rapids are not among them.
+    #[must_use]
+    pub fn slowdowns(&self) -> &[Slowdown] {
+        &self.slowdowns
+    }
+
+    fn plan(&mut self) -> Result<(), FiveAxisError> {
+        let legs = std::mem::take(&mut self.pending);
+        let Some((_, last)) = legs.last() else {
+            return Ok(());
+        };
+        match &last.path {
+            PosePath::Axes { .. } => self.plan_axes(&legs),
+            _ => self.plan_tool(&legs),
+        }
+    }
+
+    fn plan_tool(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
+        let mut stretch = ToolStretch {
+            machine: self.machine,
+            axes: &self.axes,
+            settings: &self.settings,
+            blocks: Vec::with_capacity(legs.len()),
+            corners: Vec::new(),
+            scales: Vec::new(),
+            ways: Vec::new(),
+        };
+        let mut asked = Vec::with_capacity(legs.len());
+        let mut met: Vec<Option<Worst>> = Vec::with_capacity(legs.len());
+        for (number, leg) in legs {
+            let Some(mut block) = PoseBlock::of(leg, *number, self.settings.turn_rate()) else {
+                continue;
+            };
+            asked.push(block.duration);
+            let way = self.way(&block)?;
+            if let Some(last) = way.last() {
+                self.at = *last;
+            }
+            let mut limit = None;
+            if self.settings.keeps_axis_limits() {
+                let (least, by) = least_duration(&way, &self.axes, self.settings.chain());
+                if least > block.duration {
+                    block.duration = least;
+                    limit = Some(by);
+                }
+            }
+            met.push(limit);
+            if !(block.duration > 0.0 && block.duration.is_finite()) {
+                return Err(FiveAxisError::NoRate { index: *number });
+            }
+            stretch.blocks.push(block);
+            stretch.ways.push(way);
+        }
+        let Some(last) = stretch.blocks.last() else {
+            return Ok(());
+        };
+        self.pose =
+            ToolPose::new(last.end, last.turn.end()).map_err(|reason| FiveAxisError::Path {
+                index: last.leg,
+                reason,
+            })?;
+        if let PoseMethod::JointSpace { way_points } = self.settings.method() {
+            return self.plan_joints(&stretch.blocks, &stretch.ways, way_points);
+        }
+        stretch.corners = corners(&stretch.blocks);
+        stretch.scales = vec![1.0; stretch.corners.len()];
+        let chain = self.settings.chain();
+        let steps = if self.settings.keeps_axis_limits() {
+            relax(&mut stretch, chain, &self.axes, &mut met)?
+        } else {
+            stretch.steps()
+        };
+        let knots = knots(&steps, chain);
+        for (interval, range) in intervals(&steps, &knots, chain) {
+            self.pieces.push_back(PosePiece::Tool(piece(
+                &stretch.blocks,
+                &steps,
+                chain,
+                interval,
+                range,
+            )));
+        }
+        for ((block, asked), met) in stretch.blocks.iter().zip(asked).zip(met) {
+            note(&mut self.slowdowns, &self.axes, block, asked, met);
+        }
+        Ok(())
+    }
+
+    /// Axis positions at equal shares of a block, ends included.
+    fn way(&self, block: &PoseBlock) -> Result<Vec<AxisVector>, FiveAxisError> {
+        let shares = (block.turn.angle() / SHARE_ANGLE)
+            .max(block.length / SHARE_LENGTH)
+            .ceil()
+            .clamp(4.0, MOST_SHARES);
+        let span = block.end - block.start;
+        let mut way = vec![self.at];
+        let mut near = self.at;
+        let mut step = 0.0;
+        while step <= shares {
+            let share = step / shares;
+            let pose = ToolPose::new(block.start + span * share, block.turn.at(share)).map_err(
+                |reason| FiveAxisError::Path {
+                    index: block.leg,
+                    reason,
+                },
+            )?;
+            near = self
+                .machine
+                .inverse(&pose, &near)
+                .map_err(|reason| FiveAxisError::Machine {
+                    index: block.leg,
+                    reason,
+                })?;
+            if step == 0.0 {
+                way[0] = near;
+            } else {
+                way.push(near);
+            }
+            step += 1.0;
+        }
+        Ok(way)
+    }
+
+    /// Every axis for itself between the poses of the blocks, and `way_points` between them.
+    fn plan_joints(
+        &mut self,
+        blocks: &[PoseBlock],
+        ways: &[Vec<AxisVector>],
+        way_points: u32,
+    ) -> Result<(), FiveAxisError> {
+        let parts = f64::from(way_points) + 1.0;
+        let mut joints = Vec::new();
+        for (block, way) in blocks.iter().zip(ways) {
+            let (Some(first), Some(last)) = (way.first(), way.last()) else {
+                continue;
+            };
+            let span = block.end - block.start;
+            let mut start = *first;
+            let mut part = 1.0;
+            while part <= parts {
+                let share = part / parts;
+                let end = if part < parts {
+                    let pose = ToolPose::new(block.start + span * share, block.turn.at(share))
+                        .map_err(|reason| FiveAxisError::Path {
+                            index: block.leg,
+                            reason,
+                        })?;
+                    self.machine.inverse(&pose, &start).map_err(|reason| {
+                        FiveAxisError::Machine {
+                            index: block.leg,
+                            reason,
+                        }
+                    })?
+                } else {
+                    *last
+                };
+                joints.push(JointBlock {
+                    leg: block.leg,
+                    line: block.line,
+                    start,
+                    end,
+                    duration: block.duration / parts,
+                });
+                start = end;
+                part += 1.0;
+            }
+        }
+        let overlap = self.settings.chain().total_delay();
+        self.lay_joints(joints, overlap)
+    }
+
+    fn plan_axes(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
+        let mut joints = Vec::with_capacity(legs.len());
+        for (number, leg) in legs {
+            let PosePath::Axes { start, end } = &leg.path else {
+                continue;
+            };
+            let way = [*start, *end];
+            let (least, _) = least_duration(&way, &self.axes, self.settings.chain());
+            let asked = match leg.feed {
+                PoseFeed::Rapid => 0.0,
+                PoseFeed::Duration(duration) => duration,
+                PoseFeed::Speed(feedrate) => way_length(&self.axes, start, end) / feedrate.speed(),
+            };
+            let duration = asked.max(least);
+            if duration > 0.0 {
+                joints.push(JointBlock {
+                    leg: *number,
+                    line: leg.line,
+                    start: *start,
+                    end: *end,
+                    duration,
+                });
+            }
+        }
+        if let Some(last) = joints.last() {
+            self.at = last.end;
+            self.pose =
+                self.machine
+                    .forward(&last.end)
+                    .map_err(|reason| FiveAxisError::Machine {
+                        index: last.leg,
+                        reason,
+                    })?;
+        }
+        self.lay_joints(joints, 0.0)
+    }
+
+    fn lay_joints(&mut self, blocks: Vec<JointBlock>, overlap: f64) -> Result<(), FiveAxisError> {
+        let chain = self.settings.chain();
+        let asked: Vec<_> = blocks.iter().map(|block| block.duration).collect();
+        let mut met = vec![None; blocks.len()];
+        let mut stretch = JointStretch {
+            blocks,
+            chain,
+            axes: &self.axes,
+            overlap,
+        };
+        let steps = if self.settings.keeps_axis_limits() {
+            relax(&mut stretch, chain, &self.axes, &mut met)?
+        } else {
+            stretch.steps()
+        };
+        let knots = knots(&steps, chain);
+        for (interval, range) in intervals(&steps, &knots, chain) {
+            let piece: AxesPiece = stretch.piece(&steps, interval, range);
+            self.pieces.push_back(PosePiece::Axes(piece));
+        }
+        for ((block, asked), met) in stretch.blocks.iter().zip(asked).zip(met) {
+            if let Some(met) = met
+                && block.duration > asked * NOTABLE
+            {
+                self.slowdowns.push(Slowdown {
+                    leg: block.leg,
+                    line: block.line,
+                    factor: block.duration / asked,
+                    axis: self.axes[met.axis].name,
+                    quantity: met.quantity(),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn note(
+    slowdowns: &mut Vec<Slowdown>,
+    axes: &[Axis],
+    block: &PoseBlock,
+    asked: f64,
+    met: Option<Worst>,
+) {
+    if let Some(met) = met
+        && asked > 0.0
+        && block.duration > asked * NOTABLE
+    {
+        slowdowns.push(Slowdown {
+            leg: block.leg,
+            line: block.line,
+            factor: block.duration / asked,
+            axis: axes.get(met.axis).map_or('?', |axis| axis.name),
+            quantity: met.quantity(),
+        });
+    }
+}
+
+/// Length of a straight move of axes for its feedrate: that of the linear axes, mm, or in degrees of
+/// the rotary ones where no linear axis moves.
+fn way_length(axes: &[Axis], start: &AxisVector, end: &AxisVector) -> f64 {
+    use toolglide_kinematics::AxisKind;
+    let of = |kind: AxisKind| {
+        axes.iter()
+            .zip(start.iter().zip(end.iter()))
+            .filter(|(axis, _)| axis.kind == kind)
+            .map(|(_, (start, end))| (end - start).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let linear = of(AxisKind::Linear);
+    if linear > 0.0 {
+        linear
+    } else {
+        of(AxisKind::Rotary).to_degrees()
+    }
+}
+
+/// Blocks of tool motion between two rests, and the way of the axes along each.
+struct ToolStretch<'a> {
+    machine: &'a dyn MachineKinematics,
+    axes: &'a [Axis],
+    settings: &'a PoseSettings,
+    blocks: Vec<PoseBlock>,
+    corners: Vec<PoseCorner>,
+    /// How gently each corner is taken, as a share of what the tolerances allow.
+    scales: Vec<f64>,
+    ways: Vec<Vec<AxisVector>>,
+}
+
+impl ToolStretch<'_> {
+    fn chain(&self) -> &FilterChain {
+        self.settings.chain()
+    }
+
+    /// The scale of a corner after it was taken more gently.
+    fn eased(&self, scale: f64, worst: &Worst) -> f64 {
+        // As long as two blocks overlap at all, their jerks add up.
+        let adds_up = worst.order == 2 && self.settings.method() == PoseMethod::DwellControlled;
+        let eased = scale / worst.share.clamp(LEAST_EASING, MOST_EASING);
+        if adds_up || eased < LEAST_SCALE {
+            0.0
+        } else {
+            eased
+        }
+    }
+}
+
+impl Stretch for ToolStretch<'_> {
+    fn steps(&mut self) -> Vec<Steps> {
+        time(
+            &mut self.blocks,
+            &self.corners,
+            &self.scales,
+            self.settings.method(),
+            self.settings.chain(),
+        )
+    }
+
+    fn worst(
+        &self,
+        steps: &[Steps],
+        interval: [f64; 2],
+        range: [usize; 2],
+    ) -> Result<Worst, FiveAxisError> {
+        let chain = self.chain();
+        let piece = piece(&self.blocks, steps, chain, interval, range);
+        // The axes are near those of the path of the block that is half done.
+        let mut near = self.ways[range[0]][0];
+        let under_way = range[0]..=range[1];
+        for (steps, way) in steps[under_way.clone()].iter().zip(&self.ways[under_way]) {
+            let done = steps.cubic(chain, interval[0], interval[0])[0];
+            if done > 0.0 {
+                near = way[nearest(done, way.len())];
+            }
+        }
+        let mut found = worst(self.machine, self.axes, &piece, &near).map_err(|reason| {
+            FiveAxisError::Machine {
+                index: self.blocks[range[0]].leg,
+                reason,
+            }
+        })?;
+        found.share /= AIM;
+        Ok(found)
+    }
+
+    fn pace(&self, block: usize) -> f64 {
+        let block = &self.blocks[block];
+        // A turn of one radian counts as much as a way of a hundred millimetres.
+        block.feedrate().max(100.0 * block.turn_rate())
+    }
+
+    fn duration(&mut self, block: usize) -> &mut f64 {
+        &mut self.blocks[block].duration
+    }
+
+    fn cost_of_easing(&self, block: usize, worst: &Worst) -> f64 {
+        let Some(&scale) = self.scales.get(block) else {
+            return f64::INFINITY;
+        };
+        if scale <= 0.0 {
+            return f64::INFINITY;
+        }
+        let pair = [&self.blocks[block], &self.blocks[block + 1]];
+        let corner = &self.corners[block];
+        let lost = scale - self.eased(scale, worst);
+        match self.settings.method() {
+            PoseMethod::DwellControlled => lost * corner.overlap(pair[0], pair[1], self.chain()),
+            PoseMethod::VelocityControlled => {
+                let shares = pair.map(|block| corner.slow_share(block, self.chain()));
+                0.5 * self.chain().total_delay() * lost * (shares[0] + shares[1])
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn ease(&mut self, block: usize, worst: &Worst) {
+        if let Some(&scale) = self.scales.get(block) {
+            self.scales[block] = self.eased(scale, worst);
+        }
+    }
+
+    fn leg(&self, block: usize) -> u32 {
+        self.blocks[block].leg
+    }
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "a share from 0 to 1 of a count below a hundred"
+)]
+fn nearest(share: f64, count: usize) -> usize {
+    let last = count.saturating_sub(1);
+    ((share.clamp(0.0, 1.0) * last as f64).round() as usize).min(last)
+}

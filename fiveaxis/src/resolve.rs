@@ -1,0 +1,176 @@
+//! What the words of a pose move mean on a machine.
+//!
+//! Source: tool-tip mode gives the tip in workpiece coordinates and the tool by rotary words, which
+//! forward kinematics turns into an orientation; plain mode gives positions of axes. Not here:
+//! reading programs.
+
+use crate::error::FiveAxisError;
+use toolglide_kinematics::{
+    AxisKind, AxisVector, MachineKinematics, OrientationTolerance, PoseEnd, PoseLeg, PoseMove,
+    PosePath, ToolPose, Vector,
+};
+
+/// Turns moves into legs, one after the other.
+pub struct Resolver<'m> {
+    machine: &'m dyn MachineKinematics,
+    orientation_tolerance: OrientationTolerance,
+    at: AxisVector,
+    pose: ToolPose,
+    count: u32,
+}
+
+impl std::fmt::Debug for Resolver<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Resolver")
+            .field("at", &self.at)
+            .field("count", &self.count)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'m> Resolver<'m> {
+    /// A resolver for a machine at the axis positions `start`.
+    ///
+    /// # Errors
+    /// [`FiveAxisError::Machine`] when the machine cannot stand there.
+    pub fn new(
+        machine: &'m dyn MachineKinematics,
+        start: AxisVector,
+        orientation_tolerance: OrientationTolerance,
+    ) -> Result<Self, FiveAxisError> {
+        let pose = machine
+            .forward(&start)
+            .map_err(|reason| FiveAxisError::Machine { index: 0, reason })?;
+        Ok(Self {
+            machine,
+            orientation_tolerance,
+            at: start,
+            pose,
+            count: 0,
+        })
+    }
+
+    /// Where the path has come to.
+    #[must_use]
+    pub fn pose(&self) -> ToolPose {
+        self.pose
+    }
+
+    /// The leg of the next move.
+    ///
+    /// # Errors
+    /// [`FiveAxisError`] names the move and what is wrong with it.
+    pub fn leg(&mut self, next: &PoseMove) -> Result<PoseLeg, FiveAxisError> {
+        let index = self.count;
+        self.count = self.count.saturating_add(1);
+        let path = |reason| FiveAxisError::Path { index, reason };
+        let machine = |reason| FiveAxisError::Machine { index, reason };
+        let leg = |path| PoseLeg {
+            path,
+            feed: next.feed(),
+            tip_tolerance: next.tolerance(),
+            orientation_tolerance: self.orientation_tolerance,
+            stop: next.stops(),
+            line: next.line(),
+        };
+        let (end, axes) = match *next.end() {
+            PoseEnd::Dwell { duration } => return Ok(leg(PosePath::Dwell { duration })),
+            PoseEnd::Pose(pose) => {
+                let axes = self.machine.inverse(&pose, &self.at).map_err(machine)?;
+                (pose, axes)
+            }
+            PoseEnd::Axes {
+                linear,
+                rotary,
+                tip: true,
+            } => {
+                let near = self.words(index, None, rotary)?;
+                let tool = self.machine.forward(&near).map_err(machine)?.orientation();
+                let pose = ToolPose::new(linear, tool).map_err(path)?;
+                let axes = self.machine.inverse(&pose, &near).map_err(machine)?;
+                (pose, axes)
+            }
+            PoseEnd::Axes { linear, rotary, .. } => {
+                let end = self.words(index, Some(linear), rotary)?;
+                self.check_travel(&end).map_err(machine)?;
+                let start = self.at;
+                let turns = self
+                    .machine
+                    .axes()
+                    .iter()
+                    .zip(start.iter().zip(end.iter()))
+                    .any(|(axis, (start, end))| {
+                        axis.kind == AxisKind::Rotary && (end - start).abs() > 0.0
+                    });
+                let pose = self.machine.forward(&end).map_err(machine)?;
+                if turns {
+                    self.at = end;
+                    self.pose = pose;
+                    return Ok(leg(PosePath::Axes { start, end }));
+                }
+                (pose, end)
+            }
+            _ => return Err(FiveAxisError::NoRate { index }),
+        };
+        let mut made = PoseLeg::between(
+            &self.pose,
+            &end,
+            next.feed(),
+            next.tolerance(),
+            self.orientation_tolerance,
+        )
+        .map_err(path)?;
+        made.stop = next.stops();
+        made.line = next.line();
+        self.at = axes;
+        self.pose = end;
+        Ok(made)
+    }
+
+    /// Axis positions by words: those of linear axes as they are where none are given.
+    fn words(
+        &self,
+        index: u32,
+        linear: Option<Vector<3>>,
+        rotary: [f64; 3],
+    ) -> Result<AxisVector, FiveAxisError> {
+        let axes = self.machine.axes();
+        let mut positions = self.at;
+        let mut words: Vec<(char, f64)> = Vec::with_capacity(6);
+        if let Some(linear) = linear {
+            words.extend(['X', 'Y', 'Z'].into_iter().zip(linear.iter().copied()));
+        }
+        words.extend(['A', 'B', 'C'].into_iter().zip(rotary));
+        for (letter, value) in words {
+            match axes.iter().position(|axis| axis.name == letter) {
+                Some(axis) => positions[axis] = value,
+                None if value.abs() > 0.0 => {
+                    return Err(FiveAxisError::NoAxis {
+                        index,
+                        axis: letter,
+                        axes: axes.iter().map(|axis| axis.name).collect(),
+                    });
+                }
+                None => {}
+            }
+        }
+        Ok(positions)
+    }
+
+    fn check_travel(&self, at: &AxisVector) -> Result<(), toolglide_kinematics::KinematicsError> {
+        for (axis, &position) in self.machine.axes().iter().zip(at.iter()) {
+            if let Some((low, high)) = axis.travel
+                && !(low..=high).contains(&position)
+            {
+                return Err(toolglide_kinematics::KinematicsError::Travel {
+                    axis: axis.name,
+                    kind: axis.kind,
+                    position,
+                    low,
+                    high,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,66 @@
+//! The commanded progress of a block as steps of its rate, and what the filters make of it.
+//!
+//! Source: equations 5.3 and 5.17, as sums of step responses instead of case tables. Not here: when
+//! the steps are, see `timing`.
+
+use toolglide_fir::FilterChain;
+use toolglide_kinematics::CubicInTime;
+
+/// Most steps of a block: slow, fast, slow, and an end.
+const MOST_STEPS: usize = 4;
+
+/// Steps of the rate of progress of one block; progress goes from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Steps {
+    list: [(f64, f64); MOST_STEPS],
+    count: usize,
+}
+
+impl Steps {
+    /// A pulse of constant rate.
+    pub(crate) fn pulse(start: f64, duration: f64) -> Self {
+        let mut steps = Self::default();
+        steps.push(start, 1.0 / duration);
+        steps.push(start + duration, -1.0 / duration);
+        steps
+    }
+
+    /// Adds a step: when, and by how much the rate changes, 1/s.
+    pub(crate) fn push(&mut self, time: f64, change: f64) {
+        debug_assert!(self.count < MOST_STEPS, "a block has at most three pulses");
+        self.list[self.count] = (time, change);
+        self.count += 1;
+    }
+
+    pub(crate) fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.list[..self.count].iter().map(|step| step.0)
+    }
+
+    /// When the block begins to move.
+    pub(crate) fn begin(&self) -> f64 {
+        self.list[0].0
+    }
+
+    /// When its command is over; the filters need their delay more.
+    pub(crate) fn command_end(&self) -> f64 {
+        self.list[self.count.saturating_sub(1)].0
+    }
+
+    /// Filtered progress as a polynomial from `time` on, up to the next knot; `inside` is an instant
+    /// before it.
+    pub(crate) fn cubic(&self, chain: &FilterChain, time: f64, inside: f64) -> CubicInTime {
+        [
+            self.sum(|at| chain.position(time - at)),
+            self.sum(|at| chain.velocity(time - at)),
+            self.sum(|at| chain.acceleration(time - at)) / 2.0,
+            self.sum(|at| chain.jerk(inside - at)) / 6.0,
+        ]
+    }
+
+    fn sum(&self, response: impl Fn(f64) -> f64) -> f64 {
+        self.list[..self.count]
+            .iter()
+            .map(|&(time, change)| change * response(time))
+            .sum()
+    }
+}
