@@ -4,7 +4,7 @@
 
 use crate::codes::{
     Code, Distance, FeedMode, Group, Meaning, Motion, Once, PathControl, Plane, Saving, Side, Stop,
-    ToolLength, Unread, miscellaneous, preparatory, unread_letter,
+    ToolLength, Unread, miscellaneous, of_rotary, preparatory, unread_letter,
 };
 use crate::error::{Fault, Notice, Remark};
 use crate::lexer::{Assignment, Lexer, Word};
@@ -64,6 +64,7 @@ pub(crate) struct Block {
     pub(crate) coordinates: Option<u8>,
     pub(crate) return_to_start: Option<bool>,
     pub(crate) tool_change: bool,
+    pub(crate) tool_tip: Option<bool>,
     pub(crate) saving: Option<Saving>,
     pub(crate) outside: bool,
     pub(crate) plane: Option<Plane>,
@@ -96,6 +97,7 @@ impl Block {
             coordinates: None,
             return_to_start: None,
             tool_change: false,
+            tool_tip: None,
             saving: None,
             outside: false,
             plane: None,
@@ -122,6 +124,7 @@ impl Block {
         self.coordinates = None;
         self.return_to_start = None;
         self.tool_change = false;
+        self.tool_tip = None;
         self.saving = None;
         self.outside = false;
         self.plane = None;
@@ -266,6 +269,9 @@ impl Block {
     ) -> Result<(), Fault> {
         let code = code_of(word, 1, "a number from 0 to 999 with one decimal at most")?;
         self.count(0, code);
+        if self.take_rotary(code, word.span)? {
+            return Ok(());
+        }
         match preparatory(code.tenths().unwrap_or_default()) {
             Ok((Group::Motion, meaning)) => self.take_motion(meaning, code, word.span),
             Ok((group, meaning)) => {
@@ -288,6 +294,9 @@ impl Block {
     ) -> Result<(), Fault> {
         let code = code_of(word, 10, "a whole number from 0 to 999")?;
         self.count(1, code);
+        if self.take_rotary(code, word.span)? {
+            return Ok(());
+        }
         match miscellaneous(code.tenths().unwrap_or_default()) {
             Ok((group, meaning)) => {
                 self.take(group, code, word.span)?;
@@ -305,6 +314,19 @@ impl Block {
                 Ok(())
             }
         }
+    }
+
+    /// Takes a code that only a machine with rotary axes has.
+    fn take_rotary(&mut self, code: Code, span: Span) -> Result<bool, Fault> {
+        let known = self
+            .rotary
+            .then(|| of_rotary(code.initial(), code.tenths().unwrap_or(0)));
+        let Some((group, meaning)) = known.flatten() else {
+            return Ok(false);
+        };
+        self.take(group, code, span)?;
+        self.set(meaning);
+        Ok(true)
     }
 
     fn take(&mut self, group: Group, code: Code, span: Span) -> Result<(), Fault> {
@@ -351,6 +373,7 @@ impl Block {
             Meaning::Coordinates(system) => self.coordinates = Some(system),
             Meaning::ReturnToStart(back) => self.return_to_start = Some(back),
             Meaning::ToolChange => self.tool_change = true,
+            Meaning::ToolTip(tip) => self.tool_tip = Some(tip),
             Meaning::Saving(saving) => self.saving = Some(saving),
             Meaning::Outside => self.outside = true,
             Meaning::Plane(plane) => self.plane = Some(plane),

@@ -57,6 +57,10 @@ impl Code {
             .then_some(Self::new(letter, tenths))
     }
 
+    pub(crate) fn initial(self) -> u8 {
+        self.letter
+    }
+
     pub(crate) fn tenths(self) -> Option<u16> {
         self.tenths
     }
@@ -221,6 +225,8 @@ pub(crate) enum Meaning {
     /// Whether cycles go back to where they began (`G98`) or to the plane of `R`.
     ReturnToStart(bool),
     ToolChange,
+    /// Whether the axis words are those of the tool tip.
+    ToolTip(bool),
     Saving(Saving),
     /// The words of a block belong to a function outside the motion.
     Outside,
@@ -428,6 +434,21 @@ pub(crate) fn miscellaneous(tenths: u16) -> Result<(Group, Meaning), Unread> {
         82..=84 | 100..=199 => return Err(Unread::Carried),
         _ => return Err(Unread::UnknownHarmless),
     })
+}
+
+/// Meaning of the codes that only a machine with rotary axes has.
+pub(crate) fn of_rotary(letter: u8, tenths: u16) -> Option<(Group, Meaning)> {
+    let tip = match (letter, tenths) {
+        (b'G', 434 | 435) | (b'M', 1280 | 4280) => true,
+        (b'M', 1290 | 4290) => false,
+        _ => return None,
+    };
+    let group = if letter == b'G' {
+        Group::ToolLength
+    } else {
+        Group::Outside
+    };
+    Some((group, Meaning::ToolTip(tip)))
 }
 
 /// What a letter stands for that no block may use.

@@ -47,6 +47,8 @@ pub(crate) struct Lowering {
     pub(crate) position: Vector<3>,
     /// Rotary axes A, B and C, degrees.
     pub(crate) rotary: [f64; 3],
+    /// Whether the axis words are those of the tool tip.
+    pub(crate) tip: bool,
     pub(crate) compensation: Option<Compensation>,
     pub(crate) nurbs: Option<Nurbs>,
     /// What the next spline of two offsets continues, if it does.
@@ -72,6 +74,7 @@ impl Lowering {
             program: settings.start,
             position: settings.start,
             rotary: [0.0; 3],
+            tip: false,
             compensation: None,
             nurbs: None,
             spline_end: None,

@@ -45,6 +45,11 @@ impl Lowering {
         if let Some(side) = block.side {
             self.compensate(block, side, remarks, moves)?;
         }
+        if let Some(tip) = block.tool_tip {
+            self.tip = tip;
+        } else if block.tool_length == Some(ToolLength::Off) {
+            self.tip = false;
+        }
         if let Some(length) = block.tool_length {
             self.tool_length(block, length, remarks)?;
         }

@@ -4,7 +4,7 @@
 //! where the point is on the machine.
 
 use crate::block::{AXES, Block};
-use crate::codes::{Distance, Group, Once, Plane};
+use crate::codes::{Code, Distance, Group, Once, Plane};
 use crate::error::Fault;
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
@@ -115,6 +115,12 @@ impl Lowering {
                     Distance::Absolute => value,
                     Distance::Incremental => self.rotary[axis] + value,
                 };
+                if self.compensation.is_some() {
+                    let code = Code::letter(letter);
+                    let state = "while cutter compensation is on (G40 ends it)";
+                    let reason = MachiningError::NotNow { code, state };
+                    return Err(Fault::new(block.span(letter), reason.into()));
+                }
                 if angle.abs() > LARGEST_ANGLE {
                     let letter = char::from(letter);
                     let what = "an angle up to 1e9 degrees";

@@ -30,9 +30,9 @@ pub const MOST_WARNINGS: usize = 100;
 #[derive(Debug)]
 pub struct Program<R> {
     flow: Flow<R>,
-    block: Block,
-    lowering: Lowering,
-    waiting: VecDeque<Move<3>>,
+    pub(crate) block: Block,
+    pub(crate) lowering: Lowering,
+    pub(crate) waiting: VecDeque<Move<3>>,
     remarks: Vec<Remark>,
     warnings: Vec<Warning>,
     more_warnings: u64,
@@ -76,6 +76,20 @@ impl<R: BufRead> Program<R> {
     ) -> Self {
         self.flow.find = Some(Box::new(find));
         self
+    }
+
+    /// The same program, for a machine with rotary axes A, B and C: their words are read, as are the
+    /// codes that make the tool tip the point that moves (`G43.4`, `M128`, `M428`).
+    #[must_use]
+    pub fn with_rotary_axes(mut self) -> Self {
+        self.block.rotary = true;
+        self
+    }
+
+    /// Where the rotary axes A, B and C are, degrees.
+    #[must_use]
+    pub fn rotary(&self) -> [f64; 3] {
+        self.lowering.rotary
     }
 
     /// The same program, going on behind refused lines so that all refusals are seen. What it yields
@@ -227,6 +241,42 @@ impl<R: BufRead> Program<R> {
     }
 }
 
+impl<R: BufRead> Program<R> {
+    pub(crate) fn set_past_refusals(&mut self) {
+        self.past_refusals = true;
+    }
+
+    /// A refusal of the line being read.
+    pub(crate) fn refuse(&mut self, reason: Reason) -> ProgramError {
+        if !self.past_refusals {
+            self.ended = true;
+        }
+        self.waiting.clear();
+        ProgramError::new(self.flow.place(Span::default()), reason)
+    }
+
+    /// Whether nothing more will be read.
+    pub(crate) fn is_over(&self) -> bool {
+        self.ended
+    }
+
+    /// Reads one line, and takes what it says.
+    pub(crate) fn read_line(&mut self) -> Result<(), ProgramError> {
+        let outcome = self.line();
+        if !self.remarks.is_empty() {
+            self.keep_remarks();
+        }
+        outcome.map_err(|fault| {
+            if !self.past_refusals {
+                self.ended = true;
+            }
+            self.waiting.clear();
+            let place = self.flow.place(fault.span);
+            ProgramError::new(place, fault.reason)
+        })
+    }
+}
+
 impl<R: BufRead> Iterator for Program<R> {
     type Item = Result<Move<3>, ProgramError>;
 
@@ -238,17 +288,8 @@ impl<R: BufRead> Iterator for Program<R> {
             if self.ended {
                 return None;
             }
-            let outcome = self.line();
-            if !self.remarks.is_empty() {
-                self.keep_remarks();
-            }
-            if let Err(fault) = outcome {
-                if !self.past_refusals {
-                    self.ended = true;
-                }
-                self.waiting.clear();
-                let place = self.flow.place(fault.span);
-                return Some(Err(ProgramError::new(place, fault.reason)));
+            if let Err(refusal) = self.read_line() {
+                return Some(Err(refusal));
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::arithmetic_error::ArithmeticError;
 use crate::codes::Code;
 use crate::flow_error::FlowError;
 use crate::machining_error::MachiningError;
+use crate::statement_error::StatementError;
 use thiserror::Error;
 use toolglide_kinematics::ToolpathError;
 
@@ -266,6 +267,9 @@ pub enum Reason {
     /// A subroutine, a loop or a condition is wrong.
     #[error(transparent)]
     Flow(#[from] FlowError),
+    /// A statement of a cutter location file is wrong.
+    #[error(transparent)]
+    Statement(#[from] StatementError),
     /// The block cannot be carried out.
     #[error(transparent)]
     Machining(#[from] MachiningError),

@@ -143,6 +143,7 @@ fn users(block: &Block, motion: Option<Motion>, letter: u8) -> impl Iterator<Ite
         _ => None,
     };
     let length = match block.tool_length {
+        None if block.tool_tip == Some(true) => group(Group::ToolLength, b"H"),
         Some(ToolLength::Table | ToolLength::Added) => group(Group::ToolLength, b"H"),
         _ => None,
     };

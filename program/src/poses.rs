@@ -1,0 +1,131 @@
+//! Programs for machines with rotary axes as a stream of tool poses.
+//!
+//! Not here: the languages, and what a pose means on a machine.
+
+use crate::axis_words::AxisWords;
+use crate::cl::CutterLocations;
+use crate::error::{ProgramError, Warning};
+use crate::language::Language;
+use crate::program::Program;
+use crate::settings::Settings;
+use crate::tools::ToolTable;
+use std::io::BufRead;
+use toolglide_kinematics::PoseMove;
+
+/// Reads a program and yields the moves of the tool in the workpiece, or of all axes, in order.
+///
+/// Arcs come as chords within a tenth of the tolerance, and their moves keep the rest of it.
+///
+/// # Examples
+/// ```
+/// use toolglide_kinematics::{PoseEnd, Tolerance};
+/// use toolglide_program::{Language, Poses, Settings};
+/// let text = "UNITS/MM\nFEDRAT/600,MMPM\nGOTO/1,2,3,0,0.6,0.8\nFINI\n";
+/// let settings = Settings::new(Tolerance::new(0.01)?);
+/// let poses = Poses::new(text.as_bytes(), "a.apt", settings, Language::CutterLocations);
+/// let moves = poses.collect::<Result<Vec<_>, _>>()?;
+/// let PoseEnd::Pose(pose) = moves[0].end() else { panic!("a pose") };
+/// assert_eq!(pose.tip()[2], 3.0);
+/// assert_eq!(moves[0].line(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Poses<R> {
+    source: Source<R>,
+}
+
+#[derive(Debug)]
+enum Source<R> {
+    Axes(Box<AxisWords<R>>),
+    Locations(Box<CutterLocations<R>>),
+}
+
+impl<R: BufRead> Poses<R> {
+    /// A program read from `reader` in a language; messages call it `file`.
+    pub fn new(reader: R, file: &str, settings: Settings, language: Language) -> Self {
+        let source = match language {
+            Language::CutterLocations => {
+                Source::Locations(Box::new(CutterLocations::new(reader, file, settings)))
+            }
+            _ => Source::Axes(Box::new(AxisWords::new(Program::new(
+                reader, file, settings,
+            )))),
+        };
+        Self { source }
+    }
+
+    /// The same program, with the tools of the machine.
+    #[must_use]
+    pub fn with_tools(mut self, tools: ToolTable) -> Self {
+        if let Source::Axes(axes) = &mut self.source {
+            axes.program.lowering.tools = tools;
+        }
+        self
+    }
+
+    /// The same program, going on behind refused lines, as [`Program::past_refusals`].
+    #[must_use]
+    pub fn past_refusals(mut self) -> Self {
+        match &mut self.source {
+            Source::Axes(axes) => axes.program.set_past_refusals(),
+            Source::Locations(locations) => locations.past_refusals = true,
+        }
+        self
+    }
+
+    /// What should be known of the lines read so far, as [`Program::warnings`].
+    #[must_use]
+    pub fn warnings(&self) -> &[Warning] {
+        match &self.source {
+            Source::Axes(axes) => axes.program.warnings(),
+            Source::Locations(locations) => &locations.warnings,
+        }
+    }
+
+    /// How many warnings came after those that are kept.
+    #[must_use]
+    pub fn more_warnings(&self) -> u64 {
+        match &self.source {
+            Source::Axes(axes) => axes.program.more_warnings(),
+            Source::Locations(locations) => locations.more_warnings,
+        }
+    }
+
+    /// Lines with at least one word, or statements, read so far.
+    #[must_use]
+    pub fn blocks(&self) -> u64 {
+        match &self.source {
+            Source::Axes(axes) => axes.program.blocks(),
+            Source::Locations(locations) => locations.statements,
+        }
+    }
+
+    /// Lines read so far.
+    #[must_use]
+    pub fn lines(&self) -> u64 {
+        match &self.source {
+            Source::Axes(axes) => axes.program.lines(),
+            Source::Locations(locations) => locations.lines(),
+        }
+    }
+
+    /// The line that the last refusal or the last moves came from.
+    #[must_use]
+    pub fn line_text(&self) -> std::borrow::Cow<'_, str> {
+        match &self.source {
+            Source::Axes(axes) => axes.program.line_text(),
+            Source::Locations(locations) => locations.line_text(),
+        }
+    }
+}
+
+impl<R: BufRead> Iterator for Poses<R> {
+    type Item = Result<PoseMove, ProgramError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match &mut self.source {
+            Source::Axes(axes) => axes.next(),
+            Source::Locations(locations) => locations.next(),
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What can be wrong with a statement of a cutter location file.
+//!
+//! Not here: words and codes, see [`Reason`](crate::Reason).
+
+use thiserror::Error;
+
+/// Why a statement is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum StatementError {
+    /// A statement that is not read.
+    #[error("statement {name} is not supported")]
+    NotSupported {
+        /// Its major word.
+        name: Box<str>,
+    },
+    /// Something that should be a number.
+    #[error("a number is missing here")]
+    NotANumber,
+    /// A statement with too few or too many numbers.
+    #[error("{name} has {given} numbers, but needs {wanted}")]
+    WrongCount {
+        /// Its major word.
+        name: &'static str,
+        /// How many it has.
+        given: usize,
+        /// How many it needs.
+        wanted: &'static str,
+    },
+    /// A minor word that is not known.
+    #[error("{name} is not followed by {wanted}")]
+    WrongWord {
+        /// The major word.
+        name: &'static str,
+        /// What may follow it.
+        wanted: &'static str,
+    },
+    /// A circle that is not followed by the point where it ends.
+    #[error("CIRCLE must be followed by the GOTO where the arc ends")]
+    CircleAlone,
+    /// A point that does not lie on its circle.
+    #[error(
+        "the {which} of the arc is {distance} mm from its axis, but the radius is {radius} mm; they may differ by {allowed} mm"
+    )]
+    OffCircle {
+        /// Start or end.
+        which: &'static str,
+        /// Its distance from the axis, mm.
+        distance: f64,
+        /// The radius, mm.
+        radius: f64,
+        /// By how much they may differ, mm.
+        allowed: f64,
+    },
+    /// A statement that goes on at the end of the file.
+    #[error("the statement goes on (\"$\"), but the file ends")]
+    Unfinished,
+}
