@@ -25,8 +25,11 @@ pub(crate) fn machines(args: &MachinesArgs, out: &mut dyn Write) -> Result<(), C
 
 fn listed() -> String {
     let mut text = String::new();
-    for model in models() {
-        let _ = writeln!(text, "{:<12} {}", model.name, model.summary);
+    let models = models();
+    let width = models.iter().map(|model| model.name.len()).max();
+    let width = width.unwrap_or_default();
+    for model in models {
+        let _ = writeln!(text, "{:<width$}  {}", model.name, model.summary);
     }
     text.push_str(
         "\nA machine file (TOML) describes any other; --schema prints its JSON Schema.\n",
