@@ -10,6 +10,7 @@ use crate::cubic::CubicChain;
 use crate::pulse::Pulse;
 use crate::sweep::{Command, TimedPulse};
 use toolglide_kinematics::Vector;
+use toolglide_kinematics::numeric::LIMIT_SLACK;
 
 /// Pulses that wait before the first half of them is handed out.
 const PENDING: usize = 128;
@@ -31,6 +32,9 @@ const ROUNDS: u32 = 40;
 
 /// Rounds after which a dwell that still does not suffice becomes a full stop.
 const ROUNDS_TO_STOP: u32 = 56;
+
+/// Rounds after which nothing is left to be lengthened.
+const LAST_ROUND: u32 = ROUNDS_TO_STOP + 8;
 
 /// Steps in the search of a passing feedrate: each halves what is left of its error.
 const PASSING_STEPS: u32 = 8;
@@ -324,13 +328,14 @@ impl<const N: usize> LookAhead<N> {
                 self.dirty[corner] = false;
                 let allowed = self.allowed(corner);
                 let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
-                if bound > allowed {
+                if bound > allowed * (1.0 + LIMIT_SLACK) {
                     broken = true;
                     self.dirty[corner] = true;
                     self.blame(bound / (AIM * allowed), allowed, round);
                 }
             }
-            if !broken {
+            // Beyond the last round every corner in question is a full stop, whose bound is rounding.
+            if !broken || round > LAST_ROUND {
                 return;
             }
             self.apply(round);

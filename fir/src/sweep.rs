@@ -19,7 +19,7 @@ const KNOTS_TO_ANCHOR: u32 = 32;
 
 /// Time after which the clock is set back by as much, s: a power of two, so that subtracting it is
 /// exact, and short, so that times keep their digits.
-const CLOCK_SPAN: f64 = 64.0;
+const CLOCK_SPAN: f64 = 16.0;
 
 /// What the look-ahead has decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -350,6 +350,10 @@ impl<const N: usize> Sweep<N> {
             while let Some(step) = self.steps.get(tap.next)
                 && step.time + tap.delay <= knot + SAME_INSTANT
             {
+                // Instants that are one are not quite the same: what the jerk does too early.
+                let early = step.time + tap.delay - knot;
+                let change = step.velocity - self.steps[tap.next - 1].velocity;
+                self.state.acceleration -= change * (tap.weight * early);
                 tap.next += 1;
             }
             oldest = oldest.min(tap.next - 1);
