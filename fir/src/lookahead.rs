@@ -143,6 +143,46 @@ impl<const N: usize> LookAhead<N> {
         self.slow_down();
         self.overlap_dwells();
         self.correct();
+        self.stop_where_faster();
+    }
+
+    /// Stops at every corner where that takes less time; longer dwells are always safe.
+    fn stop_where_faster(&mut self) {
+        let total = self.chain.total();
+        let first = self.fixed.saturating_sub(1);
+        let end = if self.fixed > 0 {
+            self.schedule.end(first)
+        } else {
+            0.0
+        };
+        let Some(last) = self.pulses.len().checked_sub(1) else {
+            return;
+        };
+        let planned = self.schedule.end(last) - end;
+        let is_corner = |pulse: &Pulse<N>| !pulse.smooth && pulse.turn > 0.0;
+        let moving: f64 = self.pulses[self.fixed..]
+            .iter()
+            .map(|pulse| pulse.length / pulse.limit)
+            .sum();
+        let stops = self.pulses[first..last]
+            .iter()
+            .filter(|pulse| is_corner(pulse));
+        let mut dwelling = 0.0;
+        stops.for_each(|_| dwelling += total);
+        if planned <= moving + dwelling {
+            return;
+        }
+        for index in self.fixed..=last {
+            self.pulses[index].feed = self.pulses[index].limit;
+        }
+        for index in first..last {
+            let pulse = &mut self.pulses[index];
+            if is_corner(pulse) {
+                pulse.pass = false;
+                pulse.overlap = 0.0;
+            }
+        }
+        self.time();
     }
 
     fn allowed(&self, corner: usize) -> f64 {

@@ -24,9 +24,9 @@ const LINE_SHARE: f64 = 0.9999;
 /// The same for arcs, whose chords leave a ripple behind the filters.
 const ARC_SHARE: f64 = 0.998;
 
-/// Tolerances above this share of the radius are planned with the bound alone: there the exact root
-/// for a steady circle says little about how it is entered.
-const WIDE: f64 = 0.2;
+/// Tolerances above this share of the radius are planned with the bound alone, which is a little
+/// slower: there the exact root for a steady circle says too little about how it is left.
+const WIDE: f64 = 0.02;
 
 /// Feedrates within this factor share their time constants.
 const SAME_CLASS: f64 = 2.0;

@@ -17,6 +17,10 @@ const SAME_INSTANT: f64 = 1e-12;
 /// judge can see.
 const KNOTS_TO_ANCHOR: u32 = 32;
 
+/// Pieces longer than this share of the delay of the chain start from a state computed afresh,
+/// because time squared makes the rounding of the acceleration a length.
+const LONG_PIECE: f64 = 0.5;
+
 /// Time after which the clock is set back by as much, s: a power of two, so that subtracting it is
 /// exact, and short, so that times keep their digits.
 const CLOCK_SPAN: f64 = 16.0;
@@ -237,16 +241,18 @@ impl<const N: usize> Sweep<N> {
             self.integrate(duration);
             self.expire();
             self.since_anchor += 1;
-            if self.since_anchor >= KNOTS_TO_ANCHOR || self.active.is_empty() {
-                self.anchor();
-            }
             Some((start, serves))
         } else {
             None
         };
         self.arrive(knot);
-        if self.resting && self.next_knot().is_infinite() {
+        let next = self.next_knot();
+        if self.resting && next.is_infinite() {
             self.land();
+        } else if self.since_anchor >= KNOTS_TO_ANCHOR
+            || next.min(self.horizon()) - self.time > LONG_PIECE * self.chain.total()
+        {
+            self.anchor();
         }
         let (start, serves) = piece?;
         let end = self.state.position;
@@ -330,16 +336,29 @@ impl<const N: usize> Sweep<N> {
             if since <= 0.0 {
                 break;
             }
-            let change = |response: fn(&CubicChain, f64) -> f64| {
+            let change = |response: fn(&CubicChain, f64) -> f64, since: f64, after: f64| {
                 response(&self.chain, since) - response(&self.chain, after)
             };
-            position += pulse.velocity * change(CubicChain::position);
-            velocity += pulse.velocity * change(CubicChain::velocity);
-            acceleration += pulse.velocity * change(CubicChain::acceleration);
+            position += pulse.velocity * change(CubicChain::position, since, after);
+            let (since, after) = (self.snapped(since), self.snapped(after));
+            velocity += pulse.velocity * change(CubicChain::velocity, since, after);
+            acceleration += pulse.velocity * change(CubicChain::acceleration, since, after);
         }
         self.state.position = position;
         self.state.velocity = velocity;
         self.state.acceleration = acceleration;
+    }
+
+    /// A time since a step that is exactly none, or exactly the whole delay, where it nearly is, so
+    /// that nothing is left of the acceleration.
+    fn snapped(&self, since: f64) -> f64 {
+        if since.abs() <= SAME_INSTANT {
+            0.0
+        } else if (since - self.chain.total()).abs() <= SAME_INSTANT {
+            2.0 * self.chain.total()
+        } else {
+            since
+        }
     }
 
     /// Lets the steps that are due arrive at their taps.

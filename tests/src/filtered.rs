@@ -1,0 +1,58 @@
+//! A course planned as filtered pulses behind several chains, and each plan judged.
+//!
+//! Not here: the courses.
+
+use crate::course::{Course, Numbers, limits};
+use proptest::prelude::*;
+use toolglide_fir::{FilterChain, Method, Settings, plan};
+use toolglide_kinematics::{Trajectory, verify};
+
+/// Time constants that are tried; none where the planner chooses.
+const CHAINS: [&[f64]; 4] = [&[], &[0.05, 0.03], &[0.02, 0.02], &[0.06, 0.04, 0.015]];
+
+/// Plans a course behind every chain, with stops and without, and has it judged.
+///
+/// # Errors
+/// What the judge found, or that going on is slower than stopping.
+///
+/// # Panics
+/// When the planner refuses a move.
+pub fn keeps<const N: usize>(
+    course: &Course<N>,
+    numbers: &Numbers<N>,
+) -> Result<(), TestCaseError> {
+    let path = course.toolpath();
+    let limits = limits(numbers);
+    for lengths in CHAINS {
+        let mut settings = Settings::new(limits);
+        if !lengths.is_empty() {
+            let chain = FilterChain::with_time_constants(lengths).unwrap();
+            settings = settings.with_chain(&chain).unwrap();
+        }
+        let mut durations = Vec::new();
+        for method in Method::ALL {
+            let motion = plan(&path, &settings.clone().with_method(method)).unwrap();
+            let report = verify(&motion, &path, &limits);
+            prop_assert!(
+                report.passes(),
+                "{} behind {lengths:?}: {} violations, {:#?}",
+                method.name(),
+                report.violations,
+                report.examples
+            );
+            prop_assert!(
+                (motion.end() - path.end()).norm() < 1e-9,
+                "it ends {} mm from the end",
+                (motion.end() - path.end()).norm()
+            );
+            durations.push(motion.duration());
+        }
+        prop_assert!(
+            lengths.is_empty() || durations[0] <= durations[1] * (1.0 + 1e-9) + 1e-9,
+            "non-stop takes {} s, stopping {} s behind {lengths:?}",
+            durations[0],
+            durations[1]
+        );
+    }
+    Ok(())
+}
