@@ -6,16 +6,24 @@
 
 mod accept;
 mod chords;
+mod cone;
+mod durations;
+mod front;
 mod guess;
 mod horizon;
+mod interior;
 mod planner;
+mod problem;
+mod rows;
 mod runs;
 mod safe;
 mod settings;
 mod span;
+mod spline;
 mod stream;
 mod window;
 
+pub use durations::SequentialSolver;
 pub use planner::{TimeOptimal, plan_with};
 pub use settings::{Effort, Settings};
 pub use window::{

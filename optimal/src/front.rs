@@ -1,0 +1,577 @@
+//! A quadratic of one node's coefficients, swept from the last node to the first.
+//!
+//! The front holds the cost of everything behind a node as a quadratic of the three coefficients
+//! there, of the stretch of the segment's duration and of the excess over the bounds. One interval
+//! back, a coefficient is eliminated; one segment back, a stretch. So a Newton system of any length
+//! is solved in one sweep of constant size.
+//!
+//! Source: block elimination in the order of the nodes, as in the backward recursion of
+//! linear-quadratic control. Not here: where the quadratics come from, see [`rows`](crate::rows).
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "the indices of blocks run over several arrays at once"
+)]
+
+use crate::spline::State;
+use toolglide_kinematics::{Vector, nalgebra::SMatrix};
+
+pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
+
+/// Slope of a quadratic of a point and the excess.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slope<const N: usize> {
+    pub(crate) point: Vector<N>,
+    pub(crate) excess: f64,
+}
+
+impl<const N: usize> Default for Slope<N> {
+    fn default() -> Self {
+        Self {
+            point: Vector::zeros(),
+            excess: 0.0,
+        }
+    }
+}
+
+/// Quadratic of a point and the excess.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Local<const N: usize> {
+    pub(crate) point: Square<N>,
+    pub(crate) mixed: Vector<N>,
+    pub(crate) excess: f64,
+    pub(crate) slope: Slope<N>,
+}
+
+impl<const N: usize> Default for Local<N> {
+    fn default() -> Self {
+        Self {
+            point: Square::zeros(),
+            mixed: Vector::zeros(),
+            excess: 0.0,
+            slope: Slope::default(),
+        }
+    }
+}
+
+/// How a point follows from a node: a derivative of the position, and `ahead` (s) times the next
+/// one, which stretches with the duration as at the `base`; or `weights` of the coefficients.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chain<const N: usize> {
+    /// 0 for positions, 1 for velocities, 2 for accelerations; 2 never looks ahead.
+    pub(crate) order: usize,
+    pub(crate) ahead: f64,
+    pub(crate) base: Vector<N>,
+    pub(crate) weights: [f64; 3],
+}
+
+impl<const N: usize> Chain<N> {
+    #[inline(always)]
+    pub(crate) fn point(&self, state: &State<N>, stretch: f64) -> Vector<N> {
+        if self.order == 2 {
+            state[2]
+        } else {
+            state[self.order] + (state[self.order + 1] + self.base * stretch) * self.ahead
+        }
+    }
+}
+
+/// One interval of constant jerk: weights of its four coefficients in the jerk, and how the
+/// coefficients at its end change with the stretch of its duration.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Interval<const N: usize> {
+    pub(crate) jerk: [f64; 4],
+    pub(crate) by_stretch: [Vector<N>; 3],
+}
+
+/// Slope of a quadratic of coefficients, stretch and excess.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gradient<const N: usize> {
+    pub(crate) state: State<N>,
+    pub(crate) stretch: f64,
+    pub(crate) excess: f64,
+}
+
+impl<const N: usize> Default for Gradient<N> {
+    fn default() -> Self {
+        Self {
+            state: [Vector::zeros(); 3],
+            stretch: 0.0,
+            excess: 0.0,
+        }
+    }
+}
+
+impl<const N: usize> Gradient<N> {
+    #[inline(always)]
+    pub(crate) fn add(&mut self, chain: &Chain<N>, slope: &Slope<N>) {
+        for (state, weight) in self.state.iter_mut().zip(chain.weights) {
+            if weight.abs() > 0.0 {
+                *state += slope.point * weight;
+            }
+        }
+        self.stretch += chain.base.dot(&slope.point) * chain.ahead;
+        self.excess += slope.excess;
+    }
+
+    #[inline(always)]
+    pub(crate) fn plus(&mut self, other: &Self) {
+        for order in 0..3 {
+            self.state[order] += other.state[order];
+        }
+        self.stretch += other.stretch;
+        self.excess += other.excess;
+    }
+
+    /// One interval back, with the gain that [`Cost::back`] found.
+    #[inline(always)]
+    pub(crate) fn back(&mut self, interval: &Interval<N>, jerk: &Slope<N>, gain: &mut Gain<N>) {
+        self.plus(&gain.push);
+        for (state, by_stretch) in self.state.iter().zip(&interval.by_stretch) {
+            self.stretch += state.dot(by_stretch);
+        }
+        let weights = interval.jerk;
+        let last = self.state[2] + jerk.point * weights[3];
+        gain.offset = gain.inverse * last;
+        self.state = [
+            jerk.point * weights[0] - gain.state[0].tr_mul(&last),
+            self.state[0] + jerk.point * weights[1] - gain.state[1].tr_mul(&last),
+            self.state[1] + jerk.point * weights[2] - gain.state[2].tr_mul(&last),
+        ];
+        self.stretch -= gain.stretch.dot(&last);
+        self.excess += jerk.excess - gain.excess.dot(&last);
+    }
+}
+
+/// The last coefficient of one interval as what follows from those before it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gain<const N: usize> {
+    state: [Square<N>; 3],
+    stretch: Vector<N>,
+    excess: Vector<N>,
+    inverse: Square<N>,
+    offset: Vector<N>,
+    /// What the miss of the interval adds to the slope.
+    push: Gradient<N>,
+}
+
+impl<const N: usize> Default for Gain<N> {
+    fn default() -> Self {
+        Self {
+            state: [Square::zeros(); 3],
+            stretch: Vector::zeros(),
+            excess: Vector::zeros(),
+            inverse: Square::zeros(),
+            offset: Vector::zeros(),
+            push: Gradient::default(),
+        }
+    }
+}
+
+impl<const N: usize> Gain<N> {
+    /// Changes of the jerk, and of the coefficients at the end of the interval.
+    #[inline(always)]
+    pub(crate) fn forward(
+        &self,
+        interval: &Interval<N>,
+        state: &[Vector<N>; 3],
+        stretch: f64,
+        excess: f64,
+        miss: &[Vector<N>; 3],
+    ) -> (Vector<N>, [Vector<N>; 3]) {
+        let mut last = -(self.offset + self.stretch * stretch + self.excess * excess);
+        for (gain, state) in self.state.iter().zip(state) {
+            last -= gain * state;
+        }
+        let weights = interval.jerk;
+        let jerk = state[0] * weights[0]
+            + state[1] * weights[1]
+            + state[2] * weights[2]
+            + last * weights[3];
+        let mut end = [state[1], state[2], last];
+        for index in 0..3 {
+            end[index] += interval.by_stretch[index] * stretch + miss[index];
+        }
+        (jerk, end)
+    }
+}
+
+/// The stretch of one segment as what follows from the state at its start.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StretchGain<const N: usize> {
+    state: State<N>,
+    excess: f64,
+    by_curvature: f64,
+    slope: f64,
+}
+
+impl<const N: usize> Default for StretchGain<N> {
+    fn default() -> Self {
+        Self {
+            state: [Vector::zeros(); 3],
+            excess: 0.0,
+            by_curvature: 0.0,
+            slope: 0.0,
+        }
+    }
+}
+
+impl<const N: usize> StretchGain<N> {
+    pub(crate) fn back(&mut self, gradient: &mut Gradient<N>) {
+        self.slope = gradient.stretch;
+        let share = self.slope * self.by_curvature;
+        for order in 0..3 {
+            gradient.state[order] -= self.state[order] * share;
+        }
+        gradient.excess -= self.excess * share;
+        gradient.stretch = 0.0;
+    }
+
+    pub(crate) fn forward(&self, state: &State<N>, excess: f64) -> f64 {
+        let mut slope = self.slope + self.excess * excess;
+        for order in 0..3 {
+            slope += self.state[order].dot(&state[order]);
+        }
+        -slope * self.by_curvature
+    }
+}
+
+/// A linear map from state and stretch at one node to state, or jerk, at a later one; the same for
+/// every axis but for what the stretch and the misses do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Form<const N: usize> {
+    pub(crate) state: [f64; 3],
+    pub(crate) stretch: Vector<N>,
+    pub(crate) offset: Vector<N>,
+}
+
+impl<const N: usize> Default for Form<N> {
+    fn default() -> Self {
+        Self {
+            state: [0.0; 3],
+            stretch: Vector::zeros(),
+            offset: Vector::zeros(),
+        }
+    }
+}
+
+impl<const N: usize> Form<N> {
+    pub(crate) fn value(&self, state: &State<N>, stretch: f64) -> Vector<N> {
+        let mut value = self.offset + self.stretch * stretch;
+        for order in 0..3 {
+            value += state[order] * self.state[order];
+        }
+        value
+    }
+
+    pub(crate) fn plus(&mut self, share: f64, other: &Self) {
+        for order in 0..3 {
+            self.state[order] += share * other.state[order];
+        }
+        self.stretch += other.stretch * share;
+        self.offset += other.offset * share;
+    }
+}
+
+/// Quadratic of state, stretch and excess: what everything behind a node costs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cost<const N: usize> {
+    /// Upper triangle of blocks.
+    blocks: [[Square<N>; 3]; 3],
+    by_stretch: State<N>,
+    by_excess: State<N>,
+    stretch: f64,
+    mixed: f64,
+    pub(crate) excess: f64,
+    pub(crate) slope: Gradient<N>,
+}
+
+impl<const N: usize> Default for Cost<N> {
+    fn default() -> Self {
+        Self {
+            blocks: [[Square::zeros(); 3]; 3],
+            by_stretch: [Vector::zeros(); 3],
+            by_excess: [Vector::zeros(); 3],
+            stretch: 0.0,
+            mixed: 0.0,
+            excess: 0.0,
+            slope: Gradient::default(),
+        }
+    }
+}
+
+impl<const N: usize> Cost<N> {
+    /// Adds the quadratic of a point.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, chain: &Chain<N>, local: &Local<N>) {
+        let by_stretch = chain.base * chain.ahead;
+        let pull = local.point * by_stretch;
+        for one in 0..3 {
+            let weight = chain.weights[one];
+            if weight.abs() > 0.0 {
+                let row = local.point * weight;
+                for two in one..3 {
+                    if chain.weights[two].abs() > 0.0 {
+                        self.blocks[one][two] += row * chain.weights[two];
+                    }
+                }
+                self.by_stretch[one] += pull * weight;
+                self.by_excess[one] += local.mixed * weight;
+            }
+        }
+        self.stretch += by_stretch.dot(&pull);
+        self.mixed += by_stretch.dot(&local.mixed);
+        self.excess += local.excess;
+        self.slope.add(chain, &local.slope);
+    }
+
+    /// What a miss adds to the slope.
+    #[inline(always)]
+    fn push(&self, miss: &State<N>) -> Gradient<N> {
+        let mut push = Gradient {
+            state: self.times(miss),
+            ..Gradient::default()
+        };
+        for order in 0..3 {
+            push.stretch += self.by_stretch[order].dot(&miss[order]);
+            push.excess += self.by_excess[order].dot(&miss[order]);
+        }
+        push
+    }
+
+    #[inline(always)]
+    fn times(&self, state: &State<N>) -> State<N> {
+        let [[pp, pv, pa], [_, vv, va], [_, _, aa]] = &self.blocks;
+        [
+            pp * state[0] + pv * state[1] + pa * state[2],
+            pv.tr_mul(&state[0]) + vv * state[1] + va * state[2],
+            pa.tr_mul(&state[0]) + va.tr_mul(&state[1]) + aa * state[2],
+        ]
+    }
+
+    /// One interval back: `miss` is by how much the state at its end falls short, `jerk` the
+    /// quadratic of its jerk, which is eliminated. `None` where the jerk is not bounded.
+    #[inline(always)]
+    pub(crate) fn back(
+        &mut self,
+        interval: &Interval<N>,
+        miss: &State<N>,
+        jerk: &Local<N>,
+    ) -> Option<Gain<N>> {
+        let mut gain = Gain {
+            push: self.push(miss),
+            ..Gain::default()
+        };
+        self.slope.plus(&gain.push);
+        // The stretch moves the state at the end.
+        let moved = self.times(&interval.by_stretch);
+        for order in 0..3 {
+            let by = &interval.by_stretch[order];
+            self.stretch += (self.by_stretch[order] * 2.0 + moved[order]).dot(by);
+            self.mixed += self.by_excess[order].dot(by);
+            self.slope.stretch += self.slope.state[order].dot(by);
+        }
+        for order in 0..3 {
+            self.by_stretch[order] += moved[order];
+        }
+        let weights = interval.jerk;
+        let [
+            [one_one, one_two, one_last],
+            [_, two_two, two_last],
+            [_, _, last_last],
+        ] = self.blocks;
+        let own = |one: usize, two: usize| jerk.point * (weights[one] * weights[two]);
+        // What is eliminated, and how it goes with the other three.
+        gain.inverse = inverse(last_last + own(3, 3))?;
+        let rows = [
+            own(0, 3),
+            one_last.transpose() + own(1, 3),
+            two_last.transpose() + own(2, 3),
+        ];
+        let stretch = self.by_stretch[2];
+        let excess = self.by_excess[2] + jerk.mixed * weights[3];
+        let slope = self.slope.state[2] + jerk.slope.point * weights[3];
+        for (state, row) in gain.state.iter_mut().zip(&rows) {
+            *state = gain.inverse * row;
+        }
+        gain.stretch = gain.inverse * stretch;
+        gain.excess = gain.inverse * excess;
+        gain.offset = gain.inverse * slope;
+        self.blocks = [
+            [own(0, 0), own(0, 1), own(0, 2)],
+            [Square::zeros(), one_one + own(1, 1), one_two + own(1, 2)],
+            [Square::zeros(), Square::zeros(), two_two + own(2, 2)],
+        ];
+        self.by_stretch = [Vector::zeros(), self.by_stretch[0], self.by_stretch[1]];
+        self.by_excess = [
+            jerk.mixed * weights[0],
+            self.by_excess[0] + jerk.mixed * weights[1],
+            self.by_excess[1] + jerk.mixed * weights[2],
+        ];
+        self.slope.state = [
+            jerk.slope.point * weights[0],
+            self.slope.state[0] + jerk.slope.point * weights[1],
+            self.slope.state[1] + jerk.slope.point * weights[2],
+        ];
+        for one in 0..3 {
+            for two in one..3 {
+                self.blocks[one][two] -= rows[one].tr_mul(&gain.state[two]);
+            }
+            self.by_stretch[one] -= rows[one].tr_mul(&gain.stretch);
+            self.by_excess[one] -= rows[one].tr_mul(&gain.excess);
+            self.slope.state[one] -= rows[one].tr_mul(&gain.offset);
+        }
+        // Rounding differs on both sides of the diagonal; unchecked, the difference multiplies.
+        for one in 0..3 {
+            let block = self.blocks[one][one];
+            self.blocks[one][one] = (block + block.transpose()) * 0.5;
+        }
+        self.stretch -= stretch.dot(&gain.stretch);
+        self.mixed -= stretch.dot(&gain.excess);
+        self.excess += jerk.excess - excess.dot(&gain.excess);
+        self.slope.stretch -= stretch.dot(&gain.offset);
+        self.slope.excess += jerk.slope.excess - excess.dot(&gain.offset);
+        Some(gain)
+    }
+
+    /// One segment back: its stretch is eliminated, with `curvature` and `slope` of its own rows.
+    pub(crate) fn back_stretch(&mut self, curvature: f64, slope: f64) -> Option<StretchGain<N>> {
+        let curvature = self.stretch + curvature;
+        if curvature.is_nan() || curvature <= 0.0 {
+            return None;
+        }
+        self.slope.stretch += slope;
+        let mut gain = StretchGain {
+            state: self.by_stretch,
+            excess: self.mixed,
+            by_curvature: 1.0 / curvature,
+            slope: self.slope.stretch,
+        };
+        for order in 0..3 {
+            let row = gain.state[order] * gain.by_curvature;
+            for other in order..3 {
+                self.blocks[order][other] -= row * gain.state[other].transpose();
+            }
+            self.by_excess[order] -= row * gain.excess;
+        }
+        self.excess -= gain.excess * gain.excess * gain.by_curvature;
+        gain.back(&mut self.slope);
+        self.by_stretch = [Vector::zeros(); 3];
+        self.stretch = 0.0;
+        self.mixed = 0.0;
+        Some(gain)
+    }
+
+    /// Adds the quadratic `of` a later state that follows from the state here; gives what its
+    /// offset adds to the slope there.
+    pub(crate) fn add_state(&mut self, of: &Self, forms: &[Form<N>; 3]) -> Gradient<N> {
+        let push = of.push(&forms.each_ref().map(|form| form.offset));
+        let by_stretch = forms.each_ref().map(|form| form.stretch);
+        let moved = of.times(&by_stretch);
+        for order in 0..3 {
+            for other in order..3 {
+                let mut block = Square::zeros();
+                for one in 0..3 {
+                    for two in 0..3 {
+                        let share = forms[one].state[order] * forms[two].state[other];
+                        if two < one {
+                            block += of.blocks[two][one].transpose() * share;
+                        } else {
+                            block += of.blocks[one][two] * share;
+                        }
+                    }
+                }
+                self.blocks[order][other] += block;
+            }
+            for one in 0..3 {
+                let share = forms[one].state[order];
+                self.by_stretch[order] += (of.by_stretch[one] + moved[one]) * share;
+                self.by_excess[order] += of.by_excess[one] * share;
+            }
+            self.stretch += (of.by_stretch[order] * 2.0 + moved[order]).dot(&by_stretch[order]);
+            self.mixed += of.by_excess[order].dot(&by_stretch[order]);
+        }
+        self.stretch += of.stretch;
+        self.mixed += of.mixed;
+        self.excess += of.excess;
+        let mut slope = of.slope;
+        slope.plus(&push);
+        self.slope.add_state(&slope, forms);
+        push
+    }
+
+    /// Adds the quadratic `of` a later jerk that follows from the state here; gives what its offset
+    /// adds to the slope there.
+    pub(crate) fn add_jerk(&mut self, of: &Local<N>, form: &Form<N>) -> Slope<N> {
+        let push = Slope {
+            point: of.point * form.offset,
+            excess: of.mixed.dot(&form.offset),
+        };
+        let moved = of.point * form.stretch;
+        for order in 0..3 {
+            for other in order..3 {
+                self.blocks[order][other] += of.point * (form.state[order] * form.state[other]);
+            }
+            self.by_stretch[order] += moved * form.state[order];
+            self.by_excess[order] += of.mixed * form.state[order];
+        }
+        self.stretch += form.stretch.dot(&moved);
+        self.mixed += of.mixed.dot(&form.stretch);
+        self.excess += of.excess;
+        self.slope.add_jerk(
+            &Slope {
+                point: of.slope.point + push.point,
+                excess: of.slope.excess + push.excess,
+            },
+            form,
+        );
+        push
+    }
+}
+
+impl<const N: usize> Gradient<N> {
+    pub(crate) fn add_state(&mut self, of: &Self, forms: &[Form<N>; 3]) {
+        for one in 0..3 {
+            for order in 0..3 {
+                self.state[order] += of.state[one] * forms[one].state[order];
+            }
+            self.stretch += of.state[one].dot(&forms[one].stretch);
+        }
+        self.stretch += of.stretch;
+        self.excess += of.excess;
+    }
+
+    pub(crate) fn add_jerk(&mut self, of: &Slope<N>, form: &Form<N>) {
+        for order in 0..3 {
+            self.state[order] += of.point * form.state[order];
+        }
+        self.stretch += of.point.dot(&form.stretch);
+        self.excess += of.excess;
+    }
+}
+
+/// Inverse of a positive definite matrix; `None` where it is not.
+#[inline(always)]
+fn inverse<const N: usize>(mut of: Square<N>) -> Option<Square<N>> {
+    for pivot in 0..N {
+        let value = of[(pivot, pivot)];
+        if value.is_nan() || value <= 0.0 {
+            return None;
+        }
+        let by_value = 1.0 / value;
+        of[(pivot, pivot)] = 1.0;
+        for column in 0..N {
+            of[(pivot, column)] *= by_value;
+        }
+        for row in 0..N {
+            if row != pivot {
+                let factor = of[(row, pivot)];
+                of[(row, pivot)] = 0.0;
+                for column in 0..N {
+                    of[(row, column)] -= factor * of[(pivot, column)];
+                }
+            }
+        }
+    }
+    Some(of)
+}

@@ -1,0 +1,992 @@
+//! A predictor-corrector interior-point method for one linearised window.
+//!
+//! Unknown are the states at the nodes, the jerks of the intervals, the stretch of each segment's
+//! duration and the excess over the bounds. Each iteration weighs all rows, eliminates jerks and
+//! stretches from the last node to the first ([`front`](crate::front)), and goes back twice: once
+//! to predict, once to correct.
+//!
+//! Source: Mehrotra's method with the scaling of Nesterov and Todd. Not here: what to do with the
+//! stretches, see [`durations`](crate::durations).
+
+use crate::cone::{Reach, Side, Sums};
+use crate::front::{Chain, Cost, Form, Gain, Gradient, Interval, Local, Slope, StretchGain};
+use crate::problem::{NodeRows, Problem, Visit};
+use crate::rows::Rows;
+use crate::spline::State;
+use toolglide_kinematics::Vector;
+
+/// The last intervals, whose jerks the end state demands.
+const LAST: usize = 3;
+
+/// Iterations after which a problem is given up.
+const MOST_ITERATIONS: u32 = 50;
+
+/// Share of the way to the nearest bound that is gone.
+const STEP_SHARE: f64 = 0.995;
+
+/// The excess starts here: about what an unsolved window misses its bounds by.
+const FIRST_EXCESS: f64 = 0.1;
+
+/// Least share of the complementarity to aim at.
+const LEAST_CENTERING: f64 = 1e-6;
+
+/// Inequalities per unit of the objective: keeps multipliers near one.
+const ROWS_PER_UNIT: f64 = 20.0;
+
+/// Iterations without progress after which a problem is given up.
+const MOST_STALLED: u32 = 8;
+
+/// What is to be minimised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Goal {
+    /// The duration, and the excess with this weight; stretches stay below the trust of each
+    /// segment.
+    Shorten {
+        /// Weight of the excess.
+        excess: f64,
+    },
+    /// The excess alone, with durations fixed, until it is not above this.
+    Restore {
+        /// Excess that suffices.
+        enough: f64,
+    },
+}
+
+/// When a problem counts as solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Precision {
+    /// Largest gap between objective and bound of the objective, relative to the duration.
+    pub(crate) gap: f64,
+    /// Largest share of the first miss of the dynamics that may be left.
+    pub(crate) miss: f64,
+    /// Weight of the mean square of jerk against duration.
+    pub(crate) smoothing: f64,
+}
+
+/// How solving ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ending {
+    Solved,
+    Stalled,
+    Broken,
+}
+
+/// What solving came to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outcome {
+    pub(crate) ending: Ending,
+    pub(crate) iterations: u32,
+    /// Gap that is left.
+    pub(crate) gap: f64,
+    /// Share of the first miss that is left.
+    pub(crate) miss: f64,
+}
+
+/// The iterate and the workspace, reused between problems.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Interior<const N: usize> {
+    pub(crate) states: Vec<State<N>>,
+    pub(crate) jerks: Vec<Vector<N>>,
+    pub(crate) stretches: Vec<f64>,
+    pub(crate) excess: f64,
+    /// Largest stretch of each segment, either way.
+    pub(crate) trust: Vec<f64>,
+    rows: Vec<NodeRows<N>>,
+    stretch_rows: Vec<[Side; 2]>,
+    excess_row: Side,
+    misses: Vec<State<N>>,
+    gains: Vec<Gain<N>>,
+    stretch_gains: Vec<StretchGain<N>>,
+    tail: Tail<N>,
+    excess_gain: [f64; 2],
+    state_changes: Vec<State<N>>,
+    jerk_changes: Vec<Vector<N>>,
+    stretch_changes: Vec<f64>,
+    excess_change: f64,
+}
+
+/// The last intervals as what follows from the state before them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tail<const N: usize> {
+    states: [[Form<N>; 3]; LAST - 1],
+    coefficients: [Form<N>; LAST],
+    jerks: [Form<N>; LAST],
+    state_pushes: [Gradient<N>; LAST - 1],
+    jerk_pushes: [Slope<N>; LAST],
+}
+
+impl<const N: usize> Interior<N> {
+    /// Solves a problem from the states and jerks at hand.
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem<N>,
+        goal: Goal,
+        precision: &Precision,
+    ) -> Outcome {
+        let degree = problem.degree();
+        let unit = degree / ROWS_PER_UNIT;
+        let floor = self.reset(problem, goal);
+        let mut outcome = Outcome {
+            ending: Ending::Stalled,
+            iterations: 0,
+            gap: f64::INFINITY,
+            miss: 1.0,
+        };
+        let (mut unbound, mut best, mut stalled) = (1.0_f64, f64::INFINITY, 0);
+        loop {
+            let mut sums = Sums::default();
+            let weighed = self.weigh(problem, goal, unit, precision.smoothing, floor, &mut sums);
+            outcome.gap = sums.complementarity / unit;
+            let merit = outcome.gap + outcome.miss + unbound;
+            if !merit.is_finite() || !weighed {
+                outcome.ending = Ending::Broken;
+                return outcome;
+            }
+            let solved = outcome.miss < precision.miss
+                && match goal {
+                    Goal::Restore { enough } if self.excess <= enough => true,
+                    _ => outcome.gap < precision.gap && unbound < precision.gap,
+                };
+            if solved {
+                outcome.ending = Ending::Solved;
+                return outcome;
+            }
+            if merit < 0.9 * best {
+                best = merit;
+                stalled = 0;
+            } else {
+                stalled += 1;
+            }
+            if stalled > MOST_STALLED || outcome.iterations == MOST_ITERATIONS {
+                return outcome;
+            }
+            outcome.iterations += 1;
+            self.go(problem);
+            let mut reach = Reach::default();
+            self.predict(problem, &mut reach);
+            let (primal, dual) = (1.0 / reach.primal.max(1.0), 1.0 / reach.dual.max(1.0));
+            let predicted = sums.complementarity
+                + primal * reach.by_slack
+                + dual * reach.by_multiplier
+                + primal * dual * reach.by_both;
+            let share = (predicted / sums.complementarity).clamp(0.0, 1.0).powi(3);
+            let centre = share.max(LEAST_CENTERING) * sums.complementarity / degree;
+            self.correct(problem, goal, unit, precision.smoothing, centre);
+            self.go(problem);
+            let mut reach = Reach::default();
+            self.aim(problem, &mut reach);
+            let primal = (STEP_SHARE / reach.primal.max(STEP_SHARE)).min(1.0);
+            let dual = (STEP_SHARE / reach.dual.max(STEP_SHARE)).min(1.0);
+            self.advance(problem, primal, dual);
+            outcome.miss *= 1.0 - primal;
+            unbound *= 1.0 - dual;
+        }
+    }
+
+    /// Starts all slacks and multipliers; gives the least excess.
+    fn reset(&mut self, problem: &Problem<N>, goal: Goal) -> f64 {
+        let steps = problem.steps();
+        self.rows.resize(steps + 1, NodeRows::default());
+        self.misses.resize(steps, [Vector::zeros(); 3]);
+        self.gains.resize(steps, Gain::default());
+        self.state_changes.clear();
+        self.state_changes.resize(steps + 1, [Vector::zeros(); 3]);
+        self.jerk_changes.resize(steps, Vector::zeros());
+        self.states[0] = *problem.start();
+        self.states[steps] = *problem.end();
+        self.stretches.clear();
+        self.stretches.resize(problem.segments(), 0.0);
+        self.stretch_changes.clear();
+        self.stretch_changes.resize(problem.segments(), 0.0);
+        self.stretch_gains
+            .resize(problem.segments(), StretchGain::default());
+        self.stretch_rows
+            .resize(problem.segments(), [Side::default(); 2]);
+        for (rows, trust) in self.stretch_rows.iter_mut().zip(&self.trust) {
+            for row in rows {
+                row.reset(*trust);
+            }
+        }
+        self.excess = FIRST_EXCESS;
+        let floor = match goal {
+            Goal::Shorten { .. } => 0.0,
+            Goal::Restore { .. } => -0.5,
+        };
+        self.excess_row.reset(self.excess - floor);
+        for node in 0..=steps {
+            let mut start = Start {
+                state: &self.states[node],
+                excess: self.excess,
+            };
+            let rows = &mut self.rows[node];
+            if node < steps {
+                rows.jerk
+                    .reset(problem.by_jerk(), &self.jerks[node], self.excess);
+                problem.visit_ahead(node, rows, &mut start);
+            }
+            if node > 0 {
+                problem.visit_behind(node, rows, &mut start);
+            }
+        }
+        floor
+    }
+
+    /// Weighs all rows and eliminates; whether every pivot was positive.
+    fn weigh(
+        &mut self,
+        problem: &Problem<N>,
+        goal: Goal,
+        unit: f64,
+        smoothing: f64,
+        floor: f64,
+        sums: &mut Sums,
+    ) -> bool {
+        let steps = problem.steps();
+        let excess = self.excess;
+        for interval in 0..steps {
+            let stretch = self.stretches[problem.segment_of(interval)];
+            let mut end = problem.after(
+                interval,
+                &self.states[interval],
+                &self.jerks[interval],
+                stretch,
+            );
+            for (end, next) in end.iter_mut().zip(&self.states[interval + 1]) {
+                *end -= next;
+            }
+            self.misses[interval] = problem.basis(interval + 1).coefficients(&end);
+        }
+        let mut cost = self.weigh_tail(problem, smoothing, sums);
+        let mut node = steps - LAST;
+        loop {
+            let segment = problem.segment_of(node);
+            let mut weigh = Weigh {
+                state: &self.states[node],
+                stretch: self.stretches[segment],
+                excess,
+                sums,
+                cost: &mut cost,
+            };
+            problem.visit_ahead(node, &mut self.rows[node], &mut weigh);
+            if problem.stretching() && problem.starts_segment(node) {
+                let stretch = self.stretches[segment];
+                let trust = self.trust[segment];
+                let [upper, lower] = &mut self.stretch_rows[segment];
+                let upper = upper.weigh(trust - stretch, sums);
+                let lower = lower.weigh(trust + stretch, sums);
+                let slope = unit * problem.share(segment) + lower.1 - upper.1;
+                match cost.back_stretch(upper.0 + lower.0, slope) {
+                    Some(gain) => self.stretch_gains[segment] = gain,
+                    None => return false,
+                }
+            }
+            if node == 0 {
+                break;
+            }
+            let mut weigh = Weigh {
+                state: &self.states[node],
+                stretch: self.stretches[problem.segment_of(node - 1)],
+                excess,
+                sums,
+                cost: &mut cost,
+            };
+            problem.visit_behind(node, &mut self.rows[node], &mut weigh);
+            node -= 1;
+            let jerk = self.weigh_jerk(problem, node, smoothing, sums);
+            match cost.back(&problem.interval(node), &self.misses[node], &jerk) {
+                Some(gain) => self.gains[node] = gain,
+                None => return false,
+            }
+        }
+        let row = self.excess_row.weigh(excess - floor, sums);
+        self.excess_gain = [
+            cost.excess + row.0,
+            cost.slope.excess + row.1 + weight_of_excess(goal) * unit,
+        ];
+        self.excess_gain[0] > 0.0
+    }
+
+    fn weigh_jerk(
+        &mut self,
+        problem: &Problem<N>,
+        interval: usize,
+        smoothing: f64,
+        sums: &mut Sums,
+    ) -> Local<N> {
+        let by_jerk = problem.by_jerk();
+        let jerk = self.jerks[interval];
+        let mut local = self.rows[interval]
+            .jerk
+            .weigh(by_jerk, &jerk, self.excess, sums);
+        for axis in 0..N {
+            let weight = smoothing * by_jerk[axis] * by_jerk[axis];
+            local.point[(axis, axis)] += weight;
+            local.slope.point[axis] += weight * jerk[axis];
+        }
+        local
+    }
+
+    /// The cost of the last intervals, and how they follow from the state before them.
+    fn weigh_tail(&mut self, problem: &Problem<N>, smoothing: f64, sums: &mut Sums) -> Cost<N> {
+        let steps = problem.steps();
+        let first = steps - LAST;
+        let stretch = self.stretches[problem.segments() - 1];
+        let misses = &self.misses[first..];
+        let intervals: [Interval<N>; LAST] =
+            std::array::from_fn(|index| problem.interval(first + index));
+        let identity: [Form<N>; 3] = std::array::from_fn(|order| {
+            let mut form = Form::default();
+            form.state[order] = 1.0;
+            form
+        });
+        // The last coefficients are those of the end state; what moves the nodes moves them back.
+        for index in 0..LAST {
+            let mut form = Form::default();
+            for later in index..LAST {
+                let order = index + 2 - later;
+                if order < 3 {
+                    form.stretch -= intervals[later].by_stretch[order];
+                    form.offset -= misses[later][order];
+                }
+            }
+            self.tail.coefficients[index] = form;
+        }
+        let mut forms = identity;
+        for index in 0..LAST {
+            let last = self.tail.coefficients[index];
+            let mut jerk = Form::default();
+            for (weight, form) in intervals[index].jerk.iter().zip(&forms) {
+                jerk.plus(*weight, form);
+            }
+            jerk.plus(intervals[index].jerk[3], &last);
+            self.tail.jerks[index] = jerk;
+            let mut next = [forms[1], forms[2], last];
+            for order in 0..3 {
+                next[order].stretch += intervals[index].by_stretch[order];
+                next[order].offset += misses[index][order];
+            }
+            if index < LAST - 1 {
+                self.tail.states[index] = next;
+            }
+            forms = next;
+        }
+        let mut whole = Cost::default();
+        // Of the rows at the end only stretch and excess are free.
+        let mut cost = Cost::default();
+        let mut weigh = Weigh {
+            state: &self.states[steps],
+            stretch,
+            excess: self.excess,
+            sums,
+            cost: &mut cost,
+        };
+        problem.visit_behind(steps, &mut self.rows[steps], &mut weigh);
+        whole.add_state(&cost, &[Form::default(); 3]);
+        for index in 0..LAST - 1 {
+            let node = first + 1 + index;
+            let mut cost = Cost::default();
+            let mut weigh = Weigh {
+                state: &self.states[node],
+                stretch,
+                excess: self.excess,
+                sums,
+                cost: &mut cost,
+            };
+            problem.visit_ahead(node, &mut self.rows[node], &mut weigh);
+            problem.visit_behind(node, &mut self.rows[node], &mut weigh);
+            self.tail.state_pushes[index] = whole.add_state(&cost, &self.tail.states[index]);
+        }
+        for index in 0..LAST {
+            let jerk = self.weigh_jerk(problem, first + index, smoothing, sums);
+            self.tail.jerk_pushes[index] = whole.add_jerk(&jerk, &self.tail.jerks[index]);
+        }
+        whole
+    }
+
+    /// Goes forward: the changes that follow from gains and offsets.
+    fn go(&mut self, problem: &Problem<N>) {
+        let steps = problem.steps();
+        let first = steps - LAST;
+        self.excess_change = -self.excess_gain[1] / self.excess_gain[0];
+        let mut state = [Vector::zeros(); 3];
+        let mut stretch = 0.0;
+        for node in 0..=first {
+            let segment = problem.segment_of(node);
+            if problem.stretching() && problem.starts_segment(node) {
+                stretch = self.stretch_gains[segment].forward(&state, self.excess_change);
+                self.stretch_changes[segment] = stretch;
+            }
+            self.state_changes[node] = problem.basis(node).state(&state);
+            if node < first {
+                (self.jerk_changes[node], state) = self.gains[node].forward(
+                    &problem.interval(node),
+                    &state,
+                    stretch,
+                    self.excess_change,
+                    &self.misses[node],
+                );
+            }
+        }
+        for index in 0..LAST {
+            self.jerk_changes[first + index] = self.tail.jerks[index].value(&state, stretch);
+        }
+        for index in 0..LAST - 1 {
+            let node = first + 1 + index;
+            let later = self.tail.states[index]
+                .each_ref()
+                .map(|form| form.value(&state, stretch));
+            self.state_changes[node] = problem.basis(node).state(&later);
+        }
+    }
+
+    fn each<F>(&mut self, problem: &Problem<N>, mut with: F)
+    where
+        F: FnMut(&mut NodeRows<N>, usize, &State<N>, &Vector<N>, [f64; 2]),
+    {
+        let steps = problem.steps();
+        for node in 0..=steps {
+            let (ahead, behind) = (
+                self.stretch_changes[problem.segment_of(node)],
+                self.stretch_changes[problem.segment_of(node.saturating_sub(1))],
+            );
+            let jerk = self
+                .jerk_changes
+                .get(node)
+                .copied()
+                .unwrap_or(Vector::zeros());
+            with(
+                &mut self.rows[node],
+                node,
+                &self.state_changes[node],
+                &jerk,
+                [ahead, behind],
+            );
+        }
+    }
+
+    fn predict(&mut self, problem: &Problem<N>, reach: &mut Reach) {
+        let (steps, excess) = (problem.steps(), self.excess_change);
+        self.each(problem, |rows, node, state, jerk, [ahead, behind]| {
+            let mut predict = Predict {
+                state,
+                stretch: ahead,
+                excess,
+                reach,
+            };
+            if node < steps {
+                rows.jerk
+                    .predict(problem.by_jerk(), jerk, excess, predict.reach);
+                problem.visit_ahead(node, rows, &mut predict);
+            }
+            if node > 0 {
+                predict.stretch = behind;
+                problem.visit_behind(node, rows, &mut predict);
+            }
+        });
+        if problem.stretching() {
+            for (rows, change) in self.stretch_rows.iter_mut().zip(&self.stretch_changes) {
+                rows[0].predict(-change, reach);
+                rows[1].predict(*change, reach);
+            }
+        }
+        self.excess_row.predict(excess, reach);
+    }
+
+    /// Slopes towards the complementarity `centre`, eliminated with the gains at hand.
+    fn correct(
+        &mut self,
+        problem: &Problem<N>,
+        goal: Goal,
+        unit: f64,
+        smoothing: f64,
+        centre: f64,
+    ) {
+        let steps = problem.steps();
+        let first = steps - LAST;
+        let mut whole = Gradient::default();
+        let mut gradient = Gradient::default();
+        let mut correct = Correct {
+            centre,
+            gradient: &mut gradient,
+        };
+        problem.visit_behind(steps, &mut self.rows[steps], &mut correct);
+        whole.add_state(&gradient, &[Form::default(); 3]);
+        for index in 0..LAST - 1 {
+            let node = first + 1 + index;
+            let mut gradient = self.tail.state_pushes[index];
+            let mut correct = Correct {
+                centre,
+                gradient: &mut gradient,
+            };
+            problem.visit_ahead(node, &mut self.rows[node], &mut correct);
+            problem.visit_behind(node, &mut self.rows[node], &mut correct);
+            whole.add_state(&gradient, &self.tail.states[index]);
+        }
+        for index in 0..LAST {
+            let mut slope = self.correct_jerk(problem, first + index, smoothing, centre);
+            slope.point += self.tail.jerk_pushes[index].point;
+            slope.excess += self.tail.jerk_pushes[index].excess;
+            whole.add_jerk(&slope, &self.tail.jerks[index]);
+        }
+        let mut node = first;
+        loop {
+            let segment = problem.segment_of(node);
+            let mut correct = Correct {
+                centre,
+                gradient: &mut whole,
+            };
+            problem.visit_ahead(node, &mut self.rows[node], &mut correct);
+            if problem.stretching() && problem.starts_segment(node) {
+                let [upper, lower] = &mut self.stretch_rows[segment];
+                whole.stretch +=
+                    unit * problem.share(segment) + lower.correct(centre) - upper.correct(centre);
+                self.stretch_gains[segment].back(&mut whole);
+            }
+            if node == 0 {
+                break;
+            }
+            let mut correct = Correct {
+                centre,
+                gradient: &mut whole,
+            };
+            problem.visit_behind(node, &mut self.rows[node], &mut correct);
+            node -= 1;
+            let slope = self.correct_jerk(problem, node, smoothing, centre);
+            whole.back(&problem.interval(node), &slope, &mut self.gains[node]);
+        }
+        self.excess_gain[1] =
+            whole.excess + self.excess_row.correct(centre) + weight_of_excess(goal) * unit;
+    }
+
+    fn correct_jerk(
+        &mut self,
+        problem: &Problem<N>,
+        interval: usize,
+        smoothing: f64,
+        centre: f64,
+    ) -> Slope<N> {
+        let by_jerk = problem.by_jerk();
+        let mut slope = self.rows[interval].jerk.correct(by_jerk, centre);
+        for axis in 0..N {
+            slope.point[axis] +=
+                smoothing * by_jerk[axis] * by_jerk[axis] * self.jerks[interval][axis];
+        }
+        slope
+    }
+
+    fn aim(&mut self, problem: &Problem<N>, reach: &mut Reach) {
+        let (steps, excess) = (problem.steps(), self.excess_change);
+        self.each(problem, |rows, node, state, jerk, [ahead, behind]| {
+            let mut aim = Aim {
+                state,
+                stretch: ahead,
+                excess,
+                reach,
+            };
+            if node < steps {
+                rows.jerk.aim(problem.by_jerk(), jerk, excess, aim.reach);
+                problem.visit_ahead(node, rows, &mut aim);
+            }
+            if node > 0 {
+                aim.stretch = behind;
+                problem.visit_behind(node, rows, &mut aim);
+            }
+        });
+        if problem.stretching() {
+            for (rows, change) in self.stretch_rows.iter_mut().zip(&self.stretch_changes) {
+                rows[0].aim(-change, reach);
+                rows[1].aim(*change, reach);
+            }
+        }
+        self.excess_row.aim(excess, reach);
+    }
+
+    fn advance(&mut self, problem: &Problem<N>, primal: f64, dual: f64) {
+        let steps = problem.steps();
+        self.each(problem, |rows, node, _, _, _| {
+            let mut advance = Advance { primal, dual };
+            if node < steps {
+                rows.jerk.advance(primal, dual);
+                problem.visit_ahead(node, rows, &mut advance);
+            }
+            if node > 0 {
+                problem.visit_behind(node, rows, &mut advance);
+            }
+        });
+        if problem.stretching() {
+            for row in self.stretch_rows.iter_mut().flatten() {
+                row.advance(primal, dual);
+            }
+        }
+        self.excess_row.advance(primal, dual);
+        self.excess += primal * self.excess_change;
+        for (stretch, change) in self.stretches.iter_mut().zip(&self.stretch_changes) {
+            *stretch += primal * change;
+        }
+        for (state, change) in self.states.iter_mut().zip(&self.state_changes) {
+            for order in 0..3 {
+                state[order] += change[order] * primal;
+            }
+        }
+        for (jerk, change) in self.jerks.iter_mut().zip(&self.jerk_changes) {
+            *jerk += change * primal;
+        }
+    }
+}
+
+fn weight_of_excess(goal: Goal) -> f64 {
+    match goal {
+        Goal::Shorten { excess } => excess,
+        Goal::Restore { .. } => 1.0,
+    }
+}
+
+struct Start<'a, const N: usize> {
+    state: &'a State<N>,
+    excess: f64,
+}
+
+impl<const N: usize> Visit<N> for Start<'_, N> {
+    #[inline(always)]
+    fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
+        rows.reset(bound, &chain.point(self.state, 0.0), self.excess);
+    }
+}
+
+struct Weigh<'a, const N: usize> {
+    state: &'a State<N>,
+    stretch: f64,
+    excess: f64,
+    sums: &'a mut Sums,
+    cost: &'a mut Cost<N>,
+}
+
+impl<const N: usize> Visit<N> for Weigh<'_, N> {
+    #[inline(always)]
+    fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
+        let point = chain.point(self.state, self.stretch);
+        let local = rows.weigh(bound, &point, self.excess, self.sums);
+        self.cost.add(chain, &local);
+    }
+}
+
+struct Predict<'a, const N: usize> {
+    state: &'a State<N>,
+    stretch: f64,
+    excess: f64,
+    reach: &'a mut Reach,
+}
+
+impl<const N: usize> Visit<N> for Predict<'_, N> {
+    #[inline(always)]
+    fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
+        let change = chain.point(self.state, self.stretch);
+        rows.predict(bound, &change, self.excess, self.reach);
+    }
+}
+
+struct Correct<'a, const N: usize> {
+    centre: f64,
+    gradient: &'a mut Gradient<N>,
+}
+
+impl<const N: usize> Visit<N> for Correct<'_, N> {
+    #[inline(always)]
+    fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
+        self.gradient.add(chain, &rows.correct(bound, self.centre));
+    }
+}
+
+struct Aim<'a, const N: usize> {
+    state: &'a State<N>,
+    stretch: f64,
+    excess: f64,
+    reach: &'a mut Reach,
+}
+
+impl<const N: usize> Visit<N> for Aim<'_, N> {
+    #[inline(always)]
+    fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
+        let change = chain.point(self.state, self.stretch);
+        rows.aim(bound, &change, self.excess, self.reach);
+    }
+}
+
+struct Advance {
+    primal: f64,
+    dual: f64,
+}
+
+impl<const N: usize> Visit<N> for Advance {
+    #[inline(always)]
+    fn rows<R: Rows<N>>(&mut self, rows: &mut R, _: &R::Bound, _: &Chain<N>) {
+        rows.advance(self.primal, self.dual);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::{EndState, Segment, Window};
+    use toolglide_kinematics::Limits;
+    use toolglide_kinematics::nalgebra::{DMatrix, DVector};
+
+    /// All quadratics of one iteration, as the rows give them.
+    struct Collect<'a, const N: usize> {
+        node: usize,
+        segment: usize,
+        state: &'a State<N>,
+        stretch: f64,
+        excess: f64,
+        locals: Vec<(usize, usize, Chain<N>, Local<N>)>,
+    }
+
+    impl<const N: usize> Visit<N> for Collect<'_, N> {
+        fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
+            let point = chain.point(self.state, self.stretch);
+            let local = rows.weigh(bound, &point, self.excess, &mut Sums::default());
+            self.locals.push((self.node, self.segment, *chain, local));
+        }
+    }
+
+    /// The predicting step by one dense factorisation of the whole Newton system, multipliers of
+    /// the dynamics included.
+    fn dense<const N: usize>(
+        interior: &mut Interior<N>,
+        problem: &Problem<N>,
+        goal: Goal,
+        unit: f64,
+        floor: f64,
+    ) -> DVector<f64> {
+        let (steps, segments) = (problem.steps(), problem.segments());
+        let state = |node: usize, order: usize, axis: usize| (node * 3 + order) * N + axis;
+        let jerk = |interval: usize, axis: usize| 3 * N * (steps + 1) + interval * N + axis;
+        let stretch = |segment: usize| 3 * N * (steps + 1) + steps * N + segment;
+        let excess = stretch(segments);
+        let unknowns = excess + 1;
+        let size = unknowns + 3 * N * (steps + 2);
+        let mut matrix = DMatrix::<f64>::zeros(size, size);
+        let mut side = DVector::<f64>::zeros(size);
+        for node in 0..=steps {
+            let now = interior.states[node];
+            let mut collect = Collect {
+                node,
+                segment: problem.segment_of(node),
+                state: &now,
+                stretch: interior.stretches[problem.segment_of(node)],
+                excess: interior.excess,
+                locals: Vec::new(),
+            };
+            let rows = &mut interior.rows[node];
+            if node < steps {
+                problem.visit_ahead(node, rows, &mut collect);
+            }
+            if node > 0 {
+                collect.segment = problem.segment_of(node - 1);
+                collect.stretch = interior.stretches[collect.segment];
+                problem.visit_behind(node, rows, &mut collect);
+            }
+            for (node, segment, chain, local) in collect.locals {
+                // The point as rows over the unknowns.
+                let mut rows = DMatrix::<f64>::zeros(N + 1, unknowns);
+                for axis in 0..N {
+                    rows[(axis, state(node, chain.order, axis))] += 1.0;
+                    if chain.order < 2 {
+                        rows[(axis, state(node, chain.order + 1, axis))] += chain.ahead;
+                        rows[(axis, stretch(segment))] += chain.ahead * chain.base[axis];
+                    }
+                }
+                rows[(N, excess)] = 1.0;
+                let mut curvature = DMatrix::<f64>::zeros(N + 1, N + 1);
+                let mut slope = DVector::<f64>::zeros(N + 1);
+                for axis in 0..N {
+                    for other in 0..N {
+                        curvature[(axis, other)] = local.point[(axis, other)];
+                    }
+                    curvature[(axis, N)] = local.mixed[axis];
+                    curvature[(N, axis)] = local.mixed[axis];
+                    slope[axis] = local.slope.point[axis];
+                }
+                curvature[(N, N)] = local.excess;
+                slope[N] = local.slope.excess;
+                let full = rows.transpose() * curvature * &rows;
+                let gradient = rows.transpose() * slope;
+                for one in 0..unknowns {
+                    side[one] -= gradient[one];
+                    for two in 0..unknowns {
+                        matrix[(one, two)] += full[(one, two)];
+                    }
+                }
+            }
+        }
+        for interval in 0..steps {
+            let local = interior.weigh_jerk(problem, interval, 1e-3, &mut Sums::default());
+            for axis in 0..N {
+                let at = jerk(interval, axis);
+                matrix[(at, at)] += local.point[(axis, axis)];
+                matrix[(at, excess)] += local.mixed[axis];
+                matrix[(excess, at)] += local.mixed[axis];
+                side[at] -= local.slope.point[axis];
+            }
+            matrix[(excess, excess)] += local.excess;
+            side[excess] -= local.slope.excess;
+        }
+        for segment in 0..segments {
+            let at = stretch(segment);
+            if problem.stretching() {
+                let (value, trust) = (interior.stretches[segment], interior.trust[segment]);
+                let [upper, lower] = &mut interior.stretch_rows[segment];
+                let upper = upper.weigh(trust - value, &mut Sums::default());
+                let lower = lower.weigh(trust + value, &mut Sums::default());
+                matrix[(at, at)] += upper.0 + lower.0;
+                side[at] -= unit * problem.share(segment) + lower.1 - upper.1;
+            } else {
+                matrix[(at, at)] = 1.0;
+            }
+        }
+        let row = interior
+            .excess_row
+            .weigh(interior.excess - floor, &mut Sums::default());
+        matrix[(excess, excess)] += row.0;
+        side[excess] -= row.1 + weight_of_excess(goal) * unit;
+        let mut equation = unknowns;
+        let mut couple = |entries: &[(usize, f64)], value: f64| {
+            for (at, factor) in entries {
+                matrix[(equation, *at)] = *factor;
+                matrix[(*at, equation)] = *factor;
+            }
+            side[equation] = value;
+            equation += 1;
+        };
+        for interval in 0..steps {
+            let h = problem.duration(interval);
+            let by_jerk = [h * h * h / 6.0, 0.5 * h * h, h];
+            let zero = [Vector::zeros(); 3];
+            let by_stretch = problem.after(interval, &zero, &Vector::zeros(), 1.0);
+            let end = problem.after(
+                interval,
+                &interior.states[interval],
+                &interior.jerks[interval],
+                interior.stretches[problem.segment_of(interval)],
+            );
+            let drift = [[1.0, h, 0.5 * h * h], [0.0, 1.0, h], [0.0, 0.0, 1.0]];
+            for order in 0..3 {
+                for axis in 0..N {
+                    let mut entries = vec![
+                        (jerk(interval, axis), by_jerk[order]),
+                        (
+                            stretch(problem.segment_of(interval)),
+                            by_stretch[order][axis],
+                        ),
+                        (state(interval + 1, order, axis), -1.0),
+                    ];
+                    for (from, share) in drift[order].iter().enumerate() {
+                        entries.push((state(interval, from, axis), *share));
+                    }
+                    couple(
+                        &entries,
+                        interior.states[interval + 1][order][axis] - end[order][axis],
+                    );
+                }
+            }
+        }
+        for node in [0, steps] {
+            for order in 0..3 {
+                for axis in 0..N {
+                    couple(&[(state(node, order, axis), 1.0)], 0.0);
+                }
+            }
+        }
+        let solution = matrix.lu().solve(&side).unwrap();
+        solution.rows(0, unknowns).into_owned()
+    }
+
+    fn bend() -> (Vec<Segment<2>>, Limits<2>, Vec<f64>) {
+        let points = [[0.0, 0.0], [3.0, 0.0], [3.2, 0.3], [2.0, 2.0]];
+        let segments = (0..3)
+            .map(|index| Segment {
+                start: Vector::from(points[index]),
+                end: Vector::from(points[index + 1]),
+                tolerance: 0.02,
+                corner_tolerance: Some(0.015),
+                feedrate: 80.0,
+                steps: [10, 8, 9][index],
+            })
+            .collect();
+        let limits = Limits::uniform(60.0, 2000.0, 5e4).unwrap();
+        (segments, limits, vec![0.12, 0.03, 0.11])
+    }
+
+    #[test]
+    fn the_sweep_solves_what_a_dense_factorisation_solves() {
+        let (segments, limits, durations) = bend();
+        let window = Window {
+            start: EndState {
+                position: segments[0].start,
+                velocity: Vector::from([20.0, 0.0]),
+                acceleration: Vector::from([300.0, 0.0]),
+            },
+            end: EndState::rest(segments[2].end),
+            segments: &segments,
+            limits: &limits,
+        };
+        for goal in [
+            Goal::Shorten { excess: 50.0 },
+            Goal::Restore { enough: -1.0 },
+        ] {
+            let mut problem = Problem::default();
+            problem.load(&window).unwrap();
+            problem.set_durations(&durations);
+            let mut interior = Interior::default();
+            let steps = problem.steps();
+            for node in 0..=steps {
+                let segment = &segments[problem.segment_of(node)];
+                let velocity = (segment.end - segment.start) / durations[problem.segment_of(node)];
+                interior
+                    .states
+                    .push([segment.start, velocity, Vector::from([100.0, -50.0])]);
+            }
+            interior.jerks.resize(steps, Vector::from([2e3, -3e3]));
+            interior.trust = vec![0.2; 3];
+            let (states, jerks) = (interior.states.clone(), interior.jerks.clone());
+            if matches!(goal, Goal::Shorten { .. }) {
+                problem.set_base(Some((&states, &jerks)));
+            }
+            let unit = problem.degree() / ROWS_PER_UNIT;
+            let floor = interior.reset(&problem, goal);
+            for iteration in 0..10 {
+                let mut sums = Sums::default();
+                assert!(
+                    interior.weigh(&problem, goal, unit, 1e-3, floor, &mut sums),
+                    "a pivot of iteration {iteration} is not positive"
+                );
+                interior.go(&problem);
+                let dense = dense(&mut interior, &problem, goal, unit, floor);
+                let mut worst = 0.0_f64;
+                for node in 0..=steps {
+                    for order in 0..3 {
+                        for axis in 0..2 {
+                            let scale = [1e-3, 1.0, 50.0][order];
+                            let difference = interior.state_changes[node][order][axis]
+                                - dense[(node * 3 + order) * 2 + axis];
+                            worst = worst.max(difference.abs() / scale);
+                        }
+                    }
+                }
+                let excess = dense[dense.len() - 1];
+                worst = worst.max((interior.excess_change - excess).abs() / (excess.abs() + 1e-3));
+                assert!(worst < 1e-6, "iteration {iteration}: {worst:e}");
+                let mut reach = Reach::default();
+                interior.predict(&problem, &mut reach);
+                let centre = 0.1 * sums.complementarity / problem.degree();
+                interior.correct(&problem, goal, unit, 1e-3, centre);
+                interior.go(&problem);
+                let mut reach = Reach::default();
+                interior.aim(&problem, &mut reach);
+                let primal = (STEP_SHARE / reach.primal.max(STEP_SHARE)).min(1.0);
+                let dual = (STEP_SHARE / reach.dual.max(STEP_SHARE)).min(1.0);
+                interior.advance(&problem, primal, dual);
+            }
+        }
+    }
+}
