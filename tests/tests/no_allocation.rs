@@ -5,8 +5,10 @@
 use allocation_counter::measure;
 use std::hint::black_box;
 use toolglide_kinematics::{
-    Limits, MotionPlanner, Move, Path, SamplePeriod, Sampler, Toolpath, Vector,
+    AxisKind, AxisVector, Limits, MotionPlanner, Move, Path, SamplePeriod, Sampler, Toolpath,
+    Vector,
 };
+use toolglide_machines::models;
 use toolglide_smoothing::{KinematicSmoothing, Method, Settings, plan};
 use toolglide_tests::course::{Course, Lead, arc, go, stop};
 
@@ -150,4 +152,29 @@ fn planning_a_long_zigzag_allocates_nothing() {
         .map(|k| [f64::from(k), f64::from(k % 2), 0.0])
         .collect();
     planning_allocates_nothing(&Course::of_lines([0.0; 3], &ends, 100.0, 0.01).toolpath());
+}
+
+#[test]
+fn no_machine_allocates_to_find_its_axes() {
+    for model in models() {
+        let machine = (model.build)(&(model.preset)()).unwrap();
+        let mut axes = AxisVector::zeros(machine.axes().len());
+        for (position, axis) in axes.iter_mut().zip(machine.axes()) {
+            let (low, high) = axis.travel.unwrap_or((-1.0, 1.0));
+            *position = match axis.kind {
+                AxisKind::Linear => low + 0.5 * (high - low),
+                AxisKind::Rotary => 0.3,
+            };
+        }
+        let mut solutions = 0;
+        let counted = measure(|| {
+            for _ in 0..100 {
+                let pose = machine.forward(&axes).unwrap();
+                axes = machine.inverse(&pose, &axes).unwrap();
+                solutions += machine.solutions(&pose, &axes).unwrap().len();
+            }
+        });
+        assert!(solutions >= 100, "{}: {solutions}", model.name);
+        assert_eq!(counted.count_total, 0, "{}: {counted:?}", model.name);
+    }
 }
