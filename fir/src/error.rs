@@ -37,6 +37,22 @@ pub enum FirError {
         /// The time constant, s.
         time_constant: f64,
     },
+    /// The sums of so many ticks do not fit.
+    #[error("{ticks} ticks are too many: {most} and less are held, and fewer behind many filters")]
+    TooManyTicks {
+        /// How many.
+        ticks: usize,
+        /// Most that are held.
+        most: usize,
+    },
+    /// A move must last a tick at least.
+    #[error("a move of {duration} s is shorter than the period of {period} s")]
+    ShorterThanTick {
+        /// How long it would last, s.
+        duration: f64,
+        /// The period, s.
+        period: f64,
+    },
     /// A circle that is smaller than its tolerance has no largest feedrate.
     #[error("tolerance {tolerance} mm is not below the radius of {radius} mm")]
     ToleranceAboveRadius {

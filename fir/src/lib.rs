@@ -19,6 +19,8 @@ mod planner;
 mod pulse;
 mod settings;
 mod sweep;
+mod ticks;
+mod train;
 
 pub use chain::{FilterChain, MOST_FILTERS};
 pub use circle::largest_circle_feed;
@@ -26,3 +28,5 @@ pub use error::FirError;
 pub use mode::Mode;
 pub use planner::{FirInterpolation, plan};
 pub use settings::{Method, Settings};
+pub use ticks::{TickFilter, TickPulse};
+pub use train::PulseTrain;
