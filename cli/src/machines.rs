@@ -8,6 +8,9 @@ use std::io::Write;
 use toolglide_kinematics::AxisKind;
 use toolglide_machines::{find, models, schema};
 
+/// Decimals beyond which a degree that became rad and a degree again shows its rounding.
+const DECIMALS: f64 = 1e9;
+
 /// Runs the command.
 pub(crate) fn machines(args: &MachinesArgs, out: &mut dyn Write) -> Result<(), CliError> {
     let text = if args.schema {
@@ -43,22 +46,29 @@ fn described(name: &str) -> Result<String, CliError> {
         "{} (model {})\n\naxis   velocity   acceleration   jerk         travel\n",
         config.name, config.model
     );
-    for axis in machine.axes() {
+    for (axis, written) in machine.axes().iter().zip(&config.axis) {
         let (unit, factor) = match axis.kind {
             AxisKind::Linear => ("mm", 1.0),
             AxisKind::Rotary => ("deg", 1.0_f64.to_degrees()),
         };
+        let shown = |value: f64| (value * factor * DECIMALS).round() / DECIMALS;
         let travel = axis.travel.map_or_else(
             || "no ends".to_owned(),
-            |(low, high)| format!("{} to {} {unit}", low * factor, high * factor),
+            |(low, high)| format!("{} to {} {unit}", shown(low), shown(high)),
         );
+        let reversed = if written.reversed { ", reversed" } else { "" };
+        let zero = if written.zero.abs() > 0.0 {
+            format!(", zero at {} {unit}", written.zero)
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             text,
-            "{:<6} {:<10} {:<14} {:<12} {travel}",
+            "{:<6} {:<10} {:<14} {:<12} {travel}{reversed}{zero}",
             axis.name,
-            axis.limits.velocity() * factor,
-            axis.limits.acceleration() * factor,
-            axis.limits.jerk() * factor,
+            shown(axis.limits.velocity()),
+            shown(axis.limits.acceleration()),
+            shown(axis.limits.jerk()),
         );
     }
     let _ = writeln!(

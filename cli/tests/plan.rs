@@ -264,6 +264,10 @@ fn machines_are_listed_described_and_their_files_have_a_schema() {
         "{}",
         described.out
     );
+    let table = toolglide(&["machines", "table-ac"]);
+    for shown in ["-120 to 120 deg", "a_axis_z       60 ", "no ends"] {
+        assert!(table.out.contains(shown), "{shown}: {}", table.out);
+    }
     let schema = json(&toolglide(&["machines", "--schema"]).out);
     assert!(schema["properties"]["axis"].is_object(), "{schema}");
     let unknown = toolglide(&["machines", "lathe"]);

@@ -50,11 +50,36 @@ impl Distance {
     }
 }
 
-/// Where the workpiece zero lies: three distances that every model may ask for.
+/// Where the workpiece zero lies on a machine that does not move the workpiece.
 pub const WORKPIECE: [Distance; 3] = [
-    Distance::optional("workpiece_x", "workpiece zero along X, see the model"),
-    Distance::optional("workpiece_y", "workpiece zero along Y"),
-    Distance::optional("workpiece_z", "workpiece zero along Z"),
+    Distance::optional(
+        "workpiece_x",
+        "from machine zero to workpiece zero, along X",
+    ),
+    Distance::optional(
+        "workpiece_y",
+        "from machine zero to workpiece zero, along Y",
+    ),
+    Distance::optional(
+        "workpiece_z",
+        "from machine zero to workpiece zero, along Z",
+    ),
+];
+
+/// Where the workpiece zero lies on a table, which carries it along.
+pub const WORKPIECE_ON_TABLE: [Distance; 3] = [
+    Distance::optional(
+        "workpiece_x",
+        "from the middle of the table to workpiece zero, along X",
+    ),
+    Distance::optional(
+        "workpiece_y",
+        "from the middle of the table to workpiece zero, along Y",
+    ),
+    Distance::optional(
+        "workpiece_z",
+        "from the table face to workpiece zero, along Z",
+    ),
 ];
 
 impl MachineConfig {

@@ -6,7 +6,7 @@
 
 use crate::config::{AxisConfig, MachineConfig};
 use crate::error::MachineError;
-use crate::geometry::{Distance, WORKPIECE};
+use crate::geometry::{Distance, WORKPIECE_ON_TABLE};
 use crate::registry::MachineModel;
 use crate::structure::{Assembly, Branches, Structure};
 use crate::swivel::{Swivel, about_y, about_z, back};
@@ -26,9 +26,9 @@ const GEOMETRY: [Distance; 7] = [
     Distance::required("c_axis_x", "from machine zero to the C axis, along X"),
     Distance::required("c_axis_y", "from machine zero to the C axis, along Y"),
     Distance::required("c_axis_z", "from machine zero to the table face, along Z"),
-    WORKPIECE[0],
-    WORKPIECE[1],
-    WORKPIECE[2],
+    WORKPIECE_ON_TABLE[0],
+    WORKPIECE_ON_TABLE[1],
+    WORKPIECE_ON_TABLE[2],
 ];
 
 /// A tilting head over a rotary table.

@@ -29,7 +29,7 @@ pub use delta::DELTA;
 pub use error::MachineError;
 pub use file::{from_toml, load, schema};
 pub use gantry::GANTRY;
-pub use geometry::{Distance, WORKPIECE};
+pub use geometry::{Distance, WORKPIECE, WORKPIECE_ON_TABLE};
 pub use head_bc::HEAD_BC;
 pub use head_table_bc::HEAD_TABLE_BC;
 pub use inventory;

@@ -5,7 +5,7 @@
 
 use crate::config::{AxisConfig, MachineConfig};
 use crate::error::MachineError;
-use crate::geometry::{Distance, WORKPIECE};
+use crate::geometry::{Distance, WORKPIECE_ON_TABLE};
 use crate::registry::MachineModel;
 use crate::structure::{Assembly, Branches, Structure};
 use crate::swivel::{Swivel, about_y, about_z, back};
@@ -37,9 +37,9 @@ const GEOMETRY: [Distance; 10] = [
         "from the B axis to the table face at B = 0, along Z",
     ),
     Distance::optional("tool_length", "by which Z stands above the tool tip"),
-    WORKPIECE[0],
-    WORKPIECE[1],
-    WORKPIECE[2],
+    WORKPIECE_ON_TABLE[0],
+    WORKPIECE_ON_TABLE[1],
+    WORKPIECE_ON_TABLE[2],
 ];
 
 /// A tilting rotary table.

@@ -8,7 +8,7 @@
 use toolglide_kinematics::{AxisKind, KinematicsError, MachineKinematics, ToolPose, Vector};
 use toolglide_machines::{
     Assembly, AxisConfig, Branches, Distance, MachineConfig, MachineError, MachineModel, Structure,
-    WORKPIECE, inventory,
+    WORKPIECE_ON_TABLE, inventory,
 };
 
 /// A tool that leans by less than this leaves C open, rad: the rounding of a unit vector.
@@ -37,9 +37,9 @@ const GEOMETRY: [Distance; 6] = [
         "from the B axis to the table face at B = 0, along Z",
     ),
     Distance::optional("tool_length", "by which Z stands above the tool tip"),
-    WORKPIECE[0],
-    WORKPIECE[1],
-    WORKPIECE[2],
+    WORKPIECE_ON_TABLE[0],
+    WORKPIECE_ON_TABLE[1],
+    WORKPIECE_ON_TABLE[2],
 ];
 
 /// What this machine does not share with others. The B axis goes through machine zero.
