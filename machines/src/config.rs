@@ -7,6 +7,7 @@ use crate::error::MachineError;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use toolglide_kinematics::numeric::LARGEST_MAGNITUDE;
 use toolglide_kinematics::{Axis, AxisKind, AxisLimits, SamplePeriod, Tolerance};
 
 /// Tolerance where a machine file names none, mm: fine milling.
@@ -242,7 +243,7 @@ impl AxisConfig {
             }
             None => None,
         };
-        if !self.zero.is_finite() {
+        if self.zero.is_nan() || self.zero.abs() >= LARGEST_MAGNITUDE {
             return Err(self.refuse("zero", self.zero, "finite"));
         }
         Ok(Axis {

@@ -5,6 +5,7 @@
 
 use crate::config::MachineConfig;
 use crate::error::MachineError;
+use toolglide_kinematics::numeric::LARGEST_MAGNITUDE;
 
 /// A distance that a model asks for under `[geometry]`, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,10 +120,11 @@ impl MachineConfig {
                     name: distance.name,
                     meaning: distance.meaning,
                 })?;
+            let possible = value.abs() < LARGEST_MAGNITUDE;
             let (legal, bound) = if distance.positive {
-                (*value > 0.0 && value.is_finite(), "positive and finite")
+                (*value > 0.0 && possible, "positive and finite")
             } else {
-                (value.is_finite(), "finite")
+                (possible, "finite")
             };
             if !legal {
                 let field = format!("geometry.{}", distance.name);

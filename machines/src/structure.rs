@@ -194,8 +194,14 @@ impl<S: Structure<N> + 'static, const N: usize> Assembly<S, N> {
         (positions, outside, distance)
     }
 
-    fn travel(&self, index: usize, position: f64) -> KinematicsError {
+    fn refused(&self, index: usize, position: f64) -> KinematicsError {
         let axis = &self.axes[index];
+        if !position.is_finite() {
+            return KinematicsError::NotFinite {
+                axis: axis.name,
+                position,
+            };
+        }
         let (low, high) = axis.travel.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         KinematicsError::Travel {
             axis: axis.name,
@@ -207,14 +213,16 @@ impl<S: Structure<N> + 'static, const N: usize> Assembly<S, N> {
     }
 }
 
-/// Whether a position is outside the travel of its axis.
+/// Whether a position is outside the travel of its axis, or no position.
 fn leaves(axis: &Axis, position: f64) -> bool {
     let slack = match axis.kind {
         AxisKind::Linear => LENGTH_SLACK,
         AxisKind::Rotary => ANGLE_SLACK,
     };
-    axis.travel
-        .is_some_and(|(low, high)| !(low - slack..=high + slack).contains(&position))
+    match axis.travel {
+        Some((low, high)) => !(low - slack..=high + slack).contains(&position),
+        None => !position.is_finite(),
+    }
 }
 
 /// The angle on the turn nearest to `near`; where that is outside the travel, on the nearest turn
@@ -262,22 +270,22 @@ impl<S: Structure<N> + 'static, const N: usize> MachineKinematics for Assembly<S
     fn inverse(&self, pose: &ToolPose, near: &AxisVector) -> Result<AxisVector, KinematicsError> {
         let branches = self.branches(pose, near)?;
         let mut best: Option<(AxisVector, f64)> = None;
-        let mut worst: Option<(usize, f64, f64)> = None;
+        let mut refused: Option<(usize, f64, f64)> = None;
         for joints in branches.as_slice() {
             let (positions, outside, distance) = self.positions(joints, near);
             match outside {
                 None if best.is_none_or(|(_, least)| distance < least) => {
                     best = Some((positions, distance));
                 }
-                Some(axis) if worst.is_none_or(|(_, _, least)| distance < least) => {
-                    worst = Some((axis, positions[axis], distance));
+                Some(axis) if refused.is_none_or(|(_, _, least)| distance < least) => {
+                    refused = Some((axis, positions[axis], distance));
                 }
                 _ => {}
             }
         }
-        match (best, worst) {
+        match (best, refused) {
             (Some((positions, _)), _) => Ok(positions),
-            (None, Some((axis, position, _))) => Err(self.travel(axis, position)),
+            (None, Some((axis, position, _))) => Err(self.refused(axis, position)),
             (None, None) => Err(KinematicsError::Unreachable {
                 reason: "no branch of the machine gives it",
             }),
