@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Hold every method against the time-optimal motion within the same limits and tolerance.
     Score(ScoreArgs),
+    /// Read a part program only: what it holds, and all that is wrong with it.
+    Check(CheckArgs),
     /// Plan the examples of the dissertation and compare with what it prints.
     Reproduce(ReproduceArgs),
     /// List the machines there are, or describe one.
@@ -66,6 +68,9 @@ pub(crate) struct JobArgs {
     /// Skip what the program may ask for but a planner need not know, with warnings.
     #[arg(long)]
     pub(crate) lenient: bool,
+    /// Tools of the machine: a tool table as LinuxCNC writes it, in mm.
+    #[arg(long, value_name = "FILE.tbl")]
+    pub(crate) tool_table: Option<PathBuf>,
     /// Print one JSON object instead of the summary.
     #[arg(long)]
     pub(crate) json: bool,
@@ -142,6 +147,29 @@ pub(crate) struct ScoreArgs {
     /// Draw optimum and first method; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to check.
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// Part program; - reads standard input.
+    #[arg(value_name = "PROGRAM")]
+    pub(crate) program: PathBuf,
+    /// Language of the program [default: by its name and its first lines].
+    #[arg(long, value_parser = ["ngc", "840d", "cl"])]
+    pub(crate) dialect: Option<String>,
+    /// Tolerance where the program asks for none, mm: splines become chords within it.
+    #[arg(long, value_name = "MM", value_parser = positive, default_value = "0.01", allow_hyphen_values = true)]
+    pub(crate) tolerance: f64,
+    /// Tools of the machine: a tool table as LinuxCNC writes it, in mm.
+    #[arg(long, value_name = "FILE.tbl")]
+    pub(crate) tool_table: Option<PathBuf>,
+    /// Skip what the program may ask for but a planner need not know, with warnings.
+    #[arg(long)]
+    pub(crate) lenient: bool,
+    /// Print one JSON object instead of the text.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// What to reproduce.

@@ -93,6 +93,14 @@ pub enum CliError {
     /// The program is refused; the reason names the place.
     #[error("{0}")]
     Program(Box<ProgramError>),
+    /// The tool table is refused.
+    #[error("{}: {reason}", file.display())]
+    ToolTable {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, and where.
+        reason: toolglide_program::ToolTableError,
+    },
     /// The plot cannot be drawn.
     #[error("{}: cannot be drawn: {reason}", file.display())]
     Plot {

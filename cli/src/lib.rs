@@ -5,6 +5,7 @@
 //! wrong use or wrong input, [`INTERRUPTED`] when stopped from the keyboard.
 
 mod args;
+mod check;
 mod compare;
 mod comparison;
 mod decimals;
@@ -25,6 +26,7 @@ mod setup;
 mod source;
 mod standing;
 mod summary;
+mod survey;
 mod table;
 mod travel;
 mod verify;
@@ -73,6 +75,7 @@ where
         Command::Verify(args) => verify::verify(&args, out, err),
         Command::Compare(args) => compare::compare(&args, out, err),
         Command::Score(args) => score::score(&args, out, err),
+        Command::Check(args) => check::check(&args, out, err),
         Command::Reproduce(args) => reproduce::reproduce(&args, out, err),
         Command::Machines(args) => machines::machines(&args, out).map(|()| DONE),
         Command::Completions { shell } => {

@@ -12,7 +12,7 @@ use crate::planner::planner;
 use crate::plot::{Caption, Picture, Plot};
 use crate::set_points::{Destination, SetPoints};
 use crate::setup::Setup;
-use crate::source::Source;
+use crate::source::{Source, subroutines};
 use crate::summary::{Summary, clock};
 use crate::travel::{OnAxes, Travel};
 use std::io::{BufRead, Write};
@@ -49,7 +49,9 @@ pub(crate) fn moves<const N: usize>(
         ..Settings::new(setup.tolerance)
     };
     Moves {
-        program: Program::new(source.reader, &source.name, settings),
+        program: Program::new(source.reader, &source.name, settings)
+            .with_tools(setup.tools.clone())
+            .with_subroutines(subroutines(&job.program)),
         name: source.name,
         travel: Travel::of(&setup.axes),
     }

@@ -9,6 +9,7 @@ use toolglide_kinematics::{
     Axis, AxisKind, AxisLimits, Limits, MachineKinematics, SamplePeriod, Tolerance, Vector,
 };
 use toolglide_machines::{MachineConfig, ModeConfig, find, load};
+use toolglide_program::ToolTable;
 
 /// Shortest period that is taken, s: below it a file of set-points has no end worth waiting for.
 const SHORTEST_PERIOD: f64 = 1e-9;
@@ -30,6 +31,8 @@ pub(crate) struct Setup {
     pub(crate) time_constants: Vec<f64>,
     /// Modes of vibration.
     pub(crate) modes: Vec<ModeConfig>,
+    /// Tools of the machine.
+    pub(crate) tools: ToolTable,
     start: Vec<f64>,
 }
 
@@ -102,6 +105,7 @@ impl Setup {
             tolerance,
             override_tolerance: job.tolerance.is_some(),
             period: checked_period(period.unwrap_or(machine.set_point_period().seconds()))?,
+            tools: crate::source::tools(job.tool_table.as_deref())?,
             start,
         })
     }

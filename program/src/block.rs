@@ -34,6 +34,22 @@ const PLAIN: u32 = 1 << Group::Motion as u32
     | 1 << Group::PathControl as u32
     | 1 << Group::Units as u32;
 
+/// Parts of the language that are no code, one bit each.
+pub(crate) const PARAMETERS: u8 = 1;
+pub(crate) const POLAR: u8 = 2;
+pub(crate) const ROTARY: u8 = 4;
+pub(crate) const EXTRUDER: u8 = 8;
+pub(crate) const O_WORDS: u8 = 16;
+
+/// Names of these parts.
+pub(crate) const FEATURES: [(u8, &str); 5] = [
+    (PARAMETERS, "parameters and expressions"),
+    (O_WORDS, "O words"),
+    (POLAR, "polar coordinates"),
+    (ROTARY, "rotary axes"),
+    (EXTRUDER, "extruder"),
+];
+
 /// Codes of one letter, by ten times their number.
 const CODES: usize = 10_000;
 
@@ -54,6 +70,8 @@ pub(crate) struct Block {
     pub(crate) assignments: Vec<Assignment>,
     /// Whether the machine has rotary axes.
     pub(crate) rotary: bool,
+    /// What was met beside codes.
+    pub(crate) features: u8,
     /// How often each code was met, by letter and ten times its number.
     counts: Vec<u64>,
     pub(crate) motion: Option<Motion>,
@@ -88,6 +106,7 @@ impl Block {
             words: 0,
             assignments: Vec::new(),
             rotary: false,
+            features: 0,
             counts: vec![0; 2 * CODES],
             motion: None,
             end_of_nurbs: false,
@@ -169,6 +188,8 @@ impl Block {
                 _ => self.value(word, settings, remarks)?,
             }
         }
+        let computed = lexer.computed || !assignments.is_empty();
+        self.features |= u8::from(computed) * PARAMETERS;
         Ok(())
     }
 
@@ -256,6 +277,12 @@ impl Block {
             return Err(Fault::new(word.span, Reason::Negative { quantity, value }));
         }
         self.present |= bit(word.letter);
+        self.features |= match word.letter {
+            b'@' | b'^' => POLAR,
+            b'A'..=b'C' => ROTARY,
+            b'E' => EXTRUDER,
+            _ => 0,
+        };
         self.values[index(word.letter)] = word.value;
         self.spans[index(word.letter)] = word.span;
         Ok(())

@@ -14,15 +14,16 @@ use crate::settings::Settings;
 use crate::splines::CHORD_SHARE;
 use crate::statement::Statement;
 use crate::statement_error::StatementError;
+use crate::tools::LARGEST_TOOL;
 use crate::units::{Units, within_reach};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::io::BufRead;
 use std::sync::Arc;
 use toolglide_kinematics::numeric::{ARC_RADIUS_MISMATCH, ARC_RADIUS_MISMATCH_SHARE};
 use toolglide_kinematics::{Feedrate, PoseEnd, PoseFeed, PoseMove, Tolerance, ToolPose, Vector};
 
 /// Statements that say nothing about the motion.
-const SILENT: [&str; 30] = [
+const SILENT: [&str; 28] = [
     "AIR",
     "CAMERA",
     "CHECK",
@@ -33,8 +34,6 @@ const SILENT: [&str; 30] = [
     "END-OF-PATH",
     "HEAD",
     "INTOL",
-    "LOAD",
-    "LOADTL",
     "MACHIN",
     "MODE",
     "MULTAX",
@@ -76,6 +75,7 @@ pub(crate) struct CutterLocations<R> {
     pub(crate) warnings: Vec<Warning>,
     pub(crate) more_warnings: u64,
     pub(crate) statements: u64,
+    pub(crate) tools_used: BTreeSet<u32>,
     pub(crate) past_refusals: bool,
     ended: bool,
 }
@@ -105,6 +105,7 @@ impl<R: BufRead> CutterLocations<R> {
             warnings: Vec::new(),
             more_warnings: 0,
             statements: 0,
+            tools_used: BTreeSet::new(),
             past_refusals: false,
             ended: false,
         }
@@ -209,6 +210,7 @@ impl<R: BufRead> CutterLocations<R> {
                 let end = PoseEnd::Dwell { duration: 0.0 };
                 self.push(end, PoseFeed::Rapid, self.settings.tolerance, statement)?;
             }
+            "LOADTL" | "LOAD" => self.load_tool(statement)?,
             "END" | "FINI" => self.ended = true,
             _ if SILENT.iter().any(|silent| name.starts_with(silent)) => {}
             _ => {
@@ -220,6 +222,27 @@ impl<R: BufRead> CutterLocations<R> {
                 self.warn(fault);
             }
         }
+        Ok(())
+    }
+
+    fn load_tool(&mut self, statement: &Statement<'_>) -> Result<(), Fault> {
+        let numbers = statement.numbers(true)?;
+        let number = numbers.first().copied().unwrap_or(0.0);
+        if !(0.0..=f64::from(LARGEST_TOOL)).contains(&number) || number.fract() != 0.0 {
+            let reason = Reason::NotWhole {
+                quantity: "tool number",
+                value: number,
+                least: 0,
+                most: LARGEST_TOOL,
+            };
+            return Err(Fault::new(statement.span, reason));
+        }
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole and within the bounds checked above"
+        )]
+        self.tools_used.insert(number as u32);
         Ok(())
     }
 

@@ -33,6 +33,8 @@ pub(crate) struct Lexer<'a> {
     at: usize,
     values: &'a dyn Values,
     assignments: &'a mut Vec<Assignment>,
+    /// Whether a value was more than a number.
+    pub(crate) computed: bool,
 }
 
 impl<'a> Lexer<'a> {
@@ -47,6 +49,7 @@ impl<'a> Lexer<'a> {
             at: 0,
             values,
             assignments,
+            computed: false,
         }
     }
 
@@ -112,6 +115,7 @@ impl<'a> Lexer<'a> {
         }
         let value = evaluator.value()?;
         self.at = evaluator.at;
+        self.computed = true;
         Ok(value)
     }
 

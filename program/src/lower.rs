@@ -21,7 +21,7 @@ use crate::splines::Nurbs;
 use crate::tools::ToolTable;
 use crate::units::inverse_time;
 use crate::uses::{check, motion_of, motion_span};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use toolglide_kinematics::{Feedrate, Move, Vector};
 
 /// Longest dwell, s: about eleven days, more than any process waits.
@@ -30,6 +30,9 @@ const LONGEST_DWELL: f64 = 1e6;
 /// Moves that one block may make: more than any spline or cycle of a real program, and a bound on
 /// what waits for the planner.
 pub(crate) const MOST_MOVES: u32 = 100_000;
+
+/// Tools that are remembered as used.
+const MOST_TOOLS: usize = 10_000;
 
 /// Turns blocks into moves, one after the other.
 #[derive(Debug)]
@@ -58,6 +61,7 @@ pub(crate) struct Lowering {
     /// come back when it ends.
     pub(crate) saved: Vec<Option<(Modal, bool)>>,
     pub(crate) line: u32,
+    pub(crate) tools_used: BTreeSet<u32>,
     /// Whether it was said that words of an extruder are skipped.
     extruder_noted: bool,
 }
@@ -81,6 +85,7 @@ impl Lowering {
             cycle: None,
             saved: vec![None],
             line: 0,
+            tools_used: BTreeSet::new(),
             extruder_noted: false,
         }
     }
@@ -128,6 +133,9 @@ impl Lowering {
         self.check_open_spline(block, motion)?;
         let former = self.modal.motion;
         self.modal.take(block, &self.settings, remarks)?;
+        if block.has(b'T') && self.tools_used.len() < MOST_TOOLS {
+            self.tools_used.insert(self.modal.tool);
+        }
         if block.is_plain() {
             // Most blocks of long programs are motion alone.
             if let Some(motion) = motion {

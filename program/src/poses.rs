@@ -4,6 +4,7 @@
 
 use crate::axis_words::AxisWords;
 use crate::cl::CutterLocations;
+use crate::codes::Code;
 use crate::error::{ProgramError, Warning};
 use crate::language::Language;
 use crate::program::Program;
@@ -106,6 +107,24 @@ impl<R: BufRead> Poses<R> {
         match &self.source {
             Source::Axes(axes) => axes.program.lines(),
             Source::Locations(locations) => locations.lines(),
+        }
+    }
+
+    /// `G` and `M` codes met so far, in order, and how often each.
+    #[must_use]
+    pub fn codes(&self) -> Vec<(Code, u64)> {
+        match &self.source {
+            Source::Axes(axes) => axes.program.codes().collect(),
+            Source::Locations(_) => Vec::new(),
+        }
+    }
+
+    /// Tools that were asked for so far, in order of their numbers.
+    #[must_use]
+    pub fn tools_used(&self) -> Vec<u32> {
+        match &self.source {
+            Source::Axes(axes) => axes.program.tools_used().collect(),
+            Source::Locations(locations) => locations.tools_used.iter().copied().collect(),
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Not here: the language, see the crate.
 
-use crate::block::Block;
+use crate::block::{Block, FEATURES, O_WORDS};
 use crate::codes::Code;
 use crate::control::o_word;
 use crate::error::{Fault, ProgramError, Remark, Warning};
@@ -105,6 +105,19 @@ impl<R: BufRead> Program<R> {
         self.block.codes()
     }
 
+    /// Parts of the language met so far that are no code.
+    pub fn features(&self) -> impl Iterator<Item = &'static str> + '_ {
+        FEATURES
+            .into_iter()
+            .filter(|(bit, _)| self.block.features & bit != 0)
+            .map(|(_, name)| name)
+    }
+
+    /// Tools that were asked for so far, in order of their numbers; ten thousand at most.
+    pub fn tools_used(&self) -> impl Iterator<Item = u32> + '_ {
+        self.lowering.tools_used.iter().copied()
+    }
+
     /// The line that the last refusal or the last moves came from.
     #[must_use]
     pub fn line_text(&self) -> std::borrow::Cow<'_, str> {
@@ -181,6 +194,7 @@ impl<R: BufRead> Program<R> {
             Some((_, b'N' | b'n' | b'O' | b'o')) => {
                 if let Some(at) = o_word(text) {
                     self.blocks += 1;
+                    self.block.features |= O_WORDS;
                     self.flow.obey(at, &mut self.lowering)?;
                     return Ok(());
                 }

@@ -1,0 +1,92 @@
+//! `toolglide check`: what a program holds, and everything that is wrong with it.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod common;
+
+use common::{Folder, SQUARE, toolglide};
+
+/// A program with a mistake of every kind on a line of its own.
+const WRONG: &str =
+    "G21 G90\nF600\nG1 X[1+\nG0 X#<depth> Y1\nG2 X5 R1\nG95\no1 endif\nG43 H9\nG1 X5\nM2\n";
+
+#[test]
+fn a_program_is_described() {
+    let folder = Folder::new();
+    let run = toolglide(&["check", &folder.write("part.ngc", SQUARE)]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{}", run.out);
+    for line in [
+        "lines        8 with 8 blocks",
+        "moves        5: 3 straight, 1 arcs, 1 rapids; 1 dwells",
+        "X            5.000 to 25.000 mm",
+        "Y            5.000 to 35.000 mm",
+        "Z            -1.000 to 0.000 mm",
+        "feedrate     6000.0 to 6000.0 mm/min",
+        "verdict      every line is read",
+    ] {
+        assert!(
+            run.out.lines().any(|shown| shown == line),
+            "{line}: {}",
+            run.out
+        );
+    }
+}
+
+#[test]
+fn every_error_is_shown_with_its_line_and_a_caret() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", WRONG);
+    let table = folder.write("tools.tbl", "T1 P1 Z5\n");
+    let run = toolglide(&["check", &program, "--tool-table", &table]);
+    assert_eq!(run.code, 2, "{}", run.out);
+    insta::assert_snapshot!(run.err.replace(&program, "part.ngc"));
+    assert!(
+        run.out.ends_with("verdict      6 lines are refused\n"),
+        "{}",
+        run.out
+    );
+}
+
+#[test]
+fn json_holds_the_same() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", WRONG);
+    let run = toolglide(&["check", &program, "--json"]);
+    assert_eq!((run.code, run.err.as_str()), (2, ""), "one object only");
+    let survey: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(survey["errors"].as_array().unwrap().len(), 5, "errors");
+    assert_eq!(survey["errors"][3]["line"], 6, "line");
+    assert_eq!(survey["errors"][3]["word"], "G95", "word");
+    assert_eq!(survey["warnings"][0]["line"], 8, "no tool table");
+    assert_eq!(survey["moves"], 1, "moves");
+}
+
+#[test]
+fn cutter_location_files_are_known_by_their_beginning() {
+    let folder = Folder::new();
+    let program = folder.write("part.txt", "UNITS/MM\nFEDRAT/60\nGOTO/1,2,2\nFINI\n");
+    let run = toolglide(&["check", &program]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.contains("read as cl"), "{}", run.out);
+    assert!(run.out.contains("3.000 mm at feed"), "{}", run.out);
+}
+
+#[test]
+fn subroutines_stand_in_files_beside_the_program() {
+    let folder = Folder::new();
+    folder.write(
+        "pocket.ngc",
+        "o<pocket> sub\nG1 X#1 F60\no<pocket> endsub\n",
+    );
+    let program = folder.write("part.ngc", "o<pocket> call [7]\no<nowhere> call\n");
+    let run = toolglide(&["check", &program]);
+    assert_eq!(run.code, 2, "{}", run.out);
+    assert!(run.out.contains("7.000 mm at feed"), "{}", run.out);
+    assert!(
+        run.err.contains("there is no subroutine O<nowhere>"),
+        "{}",
+        run.err
+    );
+    let run = toolglide(&["check", &program, "--tool-table", &program]);
+    assert!(run.code == 2 && run.err.contains("line 1:"), "{}", run.err);
+}

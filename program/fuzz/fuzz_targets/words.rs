@@ -1,0 +1,167 @@
+//! Lines made of the words of the language.
+
+#![no_main]
+
+use arbitrary::Arbitrary;
+use libfuzzer_sys::fuzz_target;
+use std::fmt::Write;
+
+const CODES: [&str; 74] = [
+    "G0", "G1", "G2", "G3", "G4", "G5", "G5.1", "G5.2", "G5.3", "G10 L2", "G10 L20", "G10 L1", "G10 L10",
+    "G17", "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G30.1", "G40", "G41", "G42", "G41.1",
+    "G42.1", "G43", "G43.1", "G43.2", "G49", "G53", "G54", "G55", "G59.3", "G61", "G64", "G73", "G74",
+    "G80", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G90", "G91", "G90.1", "G91.1",
+    "G92", "G92.1", "G92.2", "G92.3", "G93", "G94", "G97", "G98", "G99", "M0", "M2", "M3", "M6", "M66",
+    "M68", "M70", "M71", "M72", "M73", "M104", "G43.4",
+];
+const LETTERS: [&str; 24] = [
+    "X", "Y", "Z", "I", "J", "K", "R", "P", "Q", "F", "L", "D", "H", "S", "T", "@", "^", "A", "B", "C", "E",
+    "N", "U", "$",
+];
+const FUNCTIONS: [&str; 14] = [
+    "ABS", "ACOS", "ASIN", "ATAN", "COS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN", "SQRT", "TAN", "EXISTS",
+];
+const OPERATORS: [&str; 15] = [
+    "+", "-", "*", "/", "**", " MOD ", " AND ", " OR ", " XOR ", " EQ ", " NE ", " GT ", " GE ", " LT ",
+    " LE ",
+];
+const KEYWORDS: [&str; 15] = [
+    "sub", "endsub", "call", "return", "if", "elseif", "else", "endif", "while", "endwhile", "do", "repeat",
+    "endrepeat", "break", "continue",
+];
+const STATEMENTS: [&str; 12] = [
+    "GOTO/", "FROM/", "GODLTA/", "CIRCLE/", "FEDRAT/", "RAPID", "UNITS/MM", "UNITS/INCHES", "LOADTL/",
+    "DELAY/", "END", "GOTO/1,2,3,0,0,1,",
+];
+
+#[derive(Arbitrary, Debug)]
+enum Value {
+    Small(i8),
+    Tenths(i16),
+    Any(f64),
+    Parameter(u8),
+    Stored(u16),
+    Named(u8),
+    Expression(Box<Value>, u8, Box<Value>),
+    Function(u8, Box<Value>),
+}
+
+#[derive(Arbitrary, Debug)]
+enum Item {
+    Code(u8),
+    Word(u8, Value),
+    Assign(u8, Value),
+    AssignNamed(u8, Value),
+    AssignStored(u16, Value),
+    Comment,
+}
+
+#[derive(Arbitrary, Debug)]
+enum Line {
+    Words(Vec<Item>),
+    Control(u8, u8, Vec<Value>),
+    Location(u8, Vec<Value>),
+    Raw(String),
+}
+
+fn pick<'a>(list: &[&'a str], index: u8) -> &'a str {
+    list[usize::from(index) % list.len()]
+}
+
+impl Value {
+    fn write(&self, out: &mut String, depth: u32) {
+        if depth > 20 {
+            out.push('1');
+            return;
+        }
+        let _ = match self {
+            Self::Small(value) => write!(out, "{value}"),
+            Self::Tenths(value) => write!(out, "{:.1}", f64::from(*value) / 10.0),
+            Self::Any(value) => write!(out, "{value}"),
+            Self::Parameter(number) => write!(out, "#{number}"),
+            Self::Stored(number) => write!(out, "#{}", 5161 + number % 300),
+            Self::Named(name) => write!(out, "#<{}n{}>", if name & 8 > 0 { "_" } else { "" }, name % 4),
+            Self::Expression(left, operator, right) => {
+                out.push('[');
+                left.write(out, depth + 1);
+                out.push_str(pick(&OPERATORS, *operator));
+                right.write(out, depth + 1);
+                write!(out, "]")
+            }
+            Self::Function(name, value) => {
+                let name = pick(&FUNCTIONS, *name);
+                let _ = write!(out, "{name}[");
+                value.write(out, depth + 1);
+                if name == "ATAN" { write!(out, "]/[2]") } else { write!(out, "]") }
+            }
+        };
+    }
+}
+
+impl Line {
+    fn write(&self, out: &mut String) {
+        match self {
+            Self::Words(items) => {
+                for item in items {
+                    item.write(out);
+                    out.push(' ');
+                }
+            }
+            Self::Control(label, keyword, values) => {
+                let _ = write!(out, "o{} {}", label % 4, pick(&KEYWORDS, *keyword));
+                for value in values {
+                    out.push('[');
+                    value.write(out, 0);
+                    out.push(']');
+                }
+            }
+            Self::Location(statement, values) => {
+                out.push_str(pick(&STATEMENTS, *statement));
+                for (index, value) in values.iter().enumerate() {
+                    if index > 0 {
+                        out.push(',');
+                    }
+                    value.write(out, 20);
+                    if let Value::Tenths(tenths) = value {
+                        let _ = write!(out, ".{}", tenths.unsigned_abs());
+                    }
+                }
+            }
+            Self::Raw(text) => out.push_str(text),
+        }
+        out.push('\n');
+    }
+}
+
+impl Item {
+    fn write(&self, out: &mut String) {
+        match self {
+            Self::Code(code) => out.push_str(pick(&CODES, *code)),
+            Self::Word(letter, value) => {
+                out.push_str(pick(&LETTERS, *letter));
+                value.write(out, 0);
+            }
+            Self::Assign(number, value) => {
+                let _ = write!(out, "#{number}=");
+                value.write(out, 0);
+            }
+            Self::AssignNamed(name, value) => {
+                let _ = write!(out, "#<n{}>=", name % 4);
+                value.write(out, 0);
+            }
+            Self::AssignStored(number, value) => {
+                let _ = write!(out, "#{}=", 5161 + number % 300);
+                value.write(out, 0);
+            }
+            Self::Comment => out.push_str("(c)"),
+        }
+    }
+}
+
+fuzz_target!(|lines: Vec<Line>| {
+    let mut text = String::from("F100 S1\n");
+    for line in &lines {
+        line.write(&mut text);
+    }
+    toolglide_program_fuzz::read(text.as_bytes());
+});
