@@ -9,10 +9,37 @@
 mod clarabel;
 
 use clarabel::Conic;
+use proptest::prelude::*;
 use toolglide_kinematics::{
-    Feedrate, Limits, Plan, Tolerance, Toolpath, Trajectory, Vector, verify,
+    Arc, AxisLimits, Feedrate, Limits, MotionPlanner, Move, Plan, Tolerance, Toolpath, Trajectory,
+    Vector, WindowTally, verify,
 };
-use toolglide_optimal::{Settings, plan_with};
+use toolglide_optimal::{
+    Settings, Solved, TimeOptimal, Unsolved, Window, WindowMotion, WindowSolver, plan_with,
+};
+
+/// A solver that finds nothing, or nothing every few windows.
+#[derive(Clone, Copy, Debug)]
+struct Failing {
+    conic: Conic,
+    windows: u32,
+    every: u32,
+}
+
+impl<const N: usize> WindowSolver<N> for Failing {
+    fn solve(
+        &mut self,
+        window: &Window<'_, N>,
+        motion: &mut WindowMotion<N>,
+        effort: usize,
+    ) -> Result<Solved, Unsolved> {
+        self.windows += 1;
+        if self.windows.is_multiple_of(self.every) {
+            return Err(Unsolved::Numerical { solves: 0 });
+        }
+        self.conic.solve(window, motion, effort)
+    }
+}
 
 fn judged<const N: usize>(points: &[Vector<N>], tolerance: f64, limits: Limits<N>) -> Plan<N> {
     let path = Toolpath::from_points(
@@ -32,9 +59,141 @@ fn a_corner_takes_the_time_of_the_optimum() {
     let points = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Vector::<2>::from);
     let limits = Limits::uniform(500.0, 2500.0, 2e5).unwrap();
     for (tolerance, optimum) in [(0.01, 0.28712), (0.1, 0.27146)] {
-        let began = std::time::Instant::now();
         let duration = judged(&points, tolerance, limits).duration();
-        eprintln!("{tolerance}: {duration} {:?}", began.elapsed());
         assert!(duration < optimum * 1.003, "{tolerance}: {duration}");
+    }
+}
+
+/// Plans a path with a solver, and has it judged.
+fn run<S: WindowSolver<N>, const N: usize>(
+    solver: S,
+    path: &Toolpath<N>,
+    limits: Limits<N>,
+) -> (Plan<N>, WindowTally) {
+    let mut planner = TimeOptimal::with_solver(solver, path.start(), &Settings::new(limits));
+    let mut plan = Plan::starting_at(path.start());
+    for step in path.moves() {
+        planner.push(step).unwrap();
+        plan.extend(std::iter::from_fn(|| planner.pull()));
+    }
+    planner.finish().unwrap();
+    plan.extend(std::iter::from_fn(|| planner.pull()));
+    (plan, planner.windows().unwrap())
+}
+
+/// A stroke: a direction, a length, and what is special about it.
+type Stroke = (Vec<f64>, f64, u8);
+
+fn strokes(axes: usize) -> impl Strategy<Value = Vec<Stroke>> {
+    let stroke = (
+        prop::collection::vec(-1.0..1.0_f64, axes),
+        (0.05_f64.ln()..10.0_f64.ln()).prop_map(f64::exp),
+        0..40_u8,
+    );
+    prop::collection::vec(stroke, 1..14)
+}
+
+fn axis_limits(axes: usize) -> impl Strategy<Value = Vec<[f64; 3]>> {
+    let axis = (
+        (50.0_f64.ln()..500.0_f64.ln()).prop_map(f64::exp),
+        (500.0_f64.ln()..5000.0_f64.ln()).prop_map(f64::exp),
+        (10.0_f64.ln()..80.0_f64.ln()).prop_map(f64::exp),
+    )
+        .prop_map(|(velocity, acceleration, ratio)| [velocity, acceleration, acceleration * ratio]);
+    prop::collection::vec(axis, axes)
+}
+
+fn path_of<const N: usize>(strokes: &[Stroke], tolerance: f64) -> Toolpath<N> {
+    let mut path = Toolpath::starting_at(Vector::<N>::zeros()).unwrap();
+    let room = Tolerance::new(tolerance).unwrap();
+    let mut at = Vector::<N>::zeros();
+    for (way, length, kind) in strokes {
+        let way = Vector::<N>::from_fn(|axis, _| way[axis]);
+        let heading = if way.norm() > 0.0 {
+            way.normalize()
+        } else {
+            way
+        };
+        let feedrate = match kind {
+            0 => Feedrate::RAPID,
+            1 => Feedrate::new(20.0).unwrap(),
+            _ => Feedrate::new(100.0).unwrap(),
+        };
+        let mut next = at + heading * *length;
+        if *kind == 2 {
+            path.push(Move::dwell(0.02, room).unwrap()).unwrap();
+        }
+        if *kind == 3 {
+            let mut center = at;
+            center[0] += length;
+            next = center + (center - at);
+            let arc = Arc::about(at, next, center, [0, 1], true, 0).unwrap();
+            path.push(Move::arc(arc, feedrate, room)).unwrap();
+        } else {
+            let step = Move::line_to(next, feedrate, room).unwrap();
+            let stops = *kind == 4;
+            path.push(if stops { step.with_exact_stop() } else { step })
+                .unwrap();
+        }
+        at = next;
+    }
+    path
+}
+
+fn limits_of<const N: usize>(axes: &[[f64; 3]]) -> Limits<N> {
+    Limits::new(std::array::from_fn(|axis| {
+        let [velocity, acceleration, jerk] = axes[axis];
+        AxisLimits::new(velocity, acceleration, jerk).unwrap()
+    }))
+}
+
+/// A random program is planned without a violation, never slower than smoothed corners.
+fn holds<S: WindowSolver<N>, const N: usize>(
+    solver: S,
+    strokes: &[Stroke],
+    axes: &[[f64; 3]],
+    tolerance: f64,
+) -> Result<WindowTally, TestCaseError> {
+    let (path, limits) = (path_of::<N>(strokes, tolerance), limits_of::<N>(axes));
+    let (plan, tally) = run(solver, &path, limits);
+    let report = verify(&plan, &path, &limits);
+    prop_assert!(report.passes(), "{tally:?} {:#?}", report.examples);
+    let settings = toolglide_smoothing::Settings::new(limits);
+    let smoothed = toolglide_smoothing::plan(&path, &settings).unwrap();
+    prop_assert!(
+        plan.duration() <= smoothed.duration() + 1e-6,
+        "{} s instead of {} s",
+        plan.duration(),
+        smoothed.duration()
+    );
+    Ok(tally)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_programs_on_two_axes_pass_the_judge(
+        strokes in strokes(2), axes in axis_limits(2), tolerance in 0.005..0.1_f64,
+    ) {
+        let t = holds::<_, 2>(Conic::default(), &strokes, &axes, tolerance)?;
+        eprintln!("{} {t:?}", strokes.len());
+    }
+
+    #[test]
+    fn random_programs_on_three_axes_pass_the_judge(
+        strokes in strokes(3), axes in axis_limits(3), tolerance in 0.005..0.1_f64,
+    ) {
+        let t = holds::<_, 3>(Conic::default(), &strokes, &axes, tolerance)?;
+        eprintln!("{} {t:?}", strokes.len());
+    }
+
+    #[test]
+    fn windows_without_a_motion_keep_the_plan_before(
+        strokes in strokes(2), axes in axis_limits(2), every in 1..4_u32,
+    ) {
+        let failing = Failing { conic: Conic::default(), windows: 0, every };
+        let t = holds::<_, 2>(failing, &strokes, &axes, 0.05)?;
+        eprintln!("{} {t:?}", strokes.len());
     }
 }
