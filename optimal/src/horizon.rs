@@ -32,7 +32,7 @@ pub(crate) const MOST_SPANS: usize = 64;
 const MOST_STEPS: usize = 560;
 
 /// Share of every limit that is kept back from the solver, which meets them to its own precision only.
-const MARGIN: f64 = 1e-4;
+const MARGIN: f64 = 4e-4;
 
 /// How much slower than a guess the first motion from rest is taken to be.
 const FROM_REST: f64 = 1.1;
@@ -155,6 +155,11 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
         if !closing && (!enough || window == self.planned) {
             return false;
+        }
+        if closing && self.planned == 0 && safe::on_one_line(self.spans.iter()) == known {
+            // A straight line from rest to rest is known in closed form.
+            self.stop_at_a_move();
+            return true;
         }
         self.tally.windows += 1;
         if let Some(planned) = self.improve(window) {
@@ -425,5 +430,6 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         safe::travel(first, last, |piece| self.pieces.push_back(piece));
         self.start = EndState::rest(last.end);
         self.spans.drain(..count);
+        self.expected.clear();
     }
 }

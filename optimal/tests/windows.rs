@@ -170,22 +170,20 @@ fn holds<S: WindowSolver<N>, const N: usize>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 6, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_programs_on_two_axes_pass_the_judge(
         strokes in strokes(2), axes in axis_limits(2), tolerance in 0.005..0.1_f64,
     ) {
-        let t = holds::<_, 2>(Conic::default(), &strokes, &axes, tolerance)?;
-        eprintln!("{} {t:?}", strokes.len());
+        holds::<_, 2>(Conic::default(), &strokes, &axes, tolerance)?;
     }
 
     #[test]
     fn random_programs_on_three_axes_pass_the_judge(
         strokes in strokes(3), axes in axis_limits(3), tolerance in 0.005..0.1_f64,
     ) {
-        let t = holds::<_, 3>(Conic::default(), &strokes, &axes, tolerance)?;
-        eprintln!("{} {t:?}", strokes.len());
+        holds::<_, 3>(Conic::default(), &strokes, &axes, tolerance)?;
     }
 
     #[test]
@@ -193,7 +191,6 @@ proptest! {
         strokes in strokes(2), axes in axis_limits(2), every in 1..4_u32,
     ) {
         let failing = Failing { conic: Conic::default(), windows: 0, every };
-        let t = holds::<_, 2>(failing, &strokes, &axes, 0.05)?;
-        eprintln!("{} {t:?}", strokes.len());
+        holds::<_, 2>(failing, &strokes, &axes, 0.05)?;
     }
 }

@@ -16,7 +16,7 @@ use toolglide_optimal::{EndState, Solved, Unsolved, Window, WindowMotion, Window
 const ELASTIC: f64 = 50.0;
 
 /// What counts as kept: half of what is held back from the solver.
-const KEPT: f64 = 5e-5;
+const KEPT: f64 = 2e-4;
 
 /// Gain of a step, as a share of the duration, below which there is nothing more to gain.
 const SETTLED: f64 = 1e-3;
@@ -168,9 +168,15 @@ impl Conic {
                 within(&mut above, &[(at(3, k, i), 1.0)], 1.0);
                 if k > 0 {
                     within(&mut above, &[(at(2, k, i), 1.0)], 1.0);
-                    let bound = window.limits.velocity()[i] / scale_v[i];
-                    within(&mut above, &[(at(1, k, i), 1.0)], bound);
                 }
+                let half = 0.5 * tau[k] / scale_v[i];
+                let middle = [
+                    (at(1, k, i), 1.0),
+                    (at(2, k, i), half * scale_a[i]),
+                    (change(owner[k]), half * motion.states[k].acceleration[i]),
+                ];
+                let bound = window.limits.velocity()[i] / scale_v[i];
+                within(&mut above, &middle, bound);
             }
             let segment = &window.segments[owner[k]];
             let (h, own) = (tau[k], change(owner[k]));
@@ -309,6 +315,7 @@ impl<const N: usize> WindowSolver<N> for Conic {
                 continue;
             };
             let duration = base.duration();
+
             let gain = -base
                 .durations
                 .iter()
@@ -332,6 +339,7 @@ impl<const N: usize> WindowSolver<N> for Conic {
                 continue;
             };
             base = restored.motion;
+
             if restored.excess < KEPT {
                 if best
                     .as_ref()
@@ -345,6 +353,20 @@ impl<const N: usize> WindowSolver<N> for Conic {
             } else {
                 trust = (0.5 * trust).max(0.02);
             }
+        }
+        // What does not settle is slowed down until it fits.
+        let mut slower = 0.002;
+        while best.is_none() && slower < 0.1 {
+            for duration in &mut base.durations {
+                *duration *= 1.0 + slower;
+            }
+            if let Some(restored) = self.program(window, &base, None) {
+                base = restored.motion;
+                if restored.excess < KEPT {
+                    best = Some(base.clone());
+                }
+            }
+            slower *= 2.0;
         }
         let solves = self.solves - before;
         let Some(best) = best else {
