@@ -7,6 +7,7 @@ use crate::planner::METHODS;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use toolglide_optimal::Effort;
 
 /// Plans smooth motion for machine tools and judges it.
 #[derive(Debug, Parser)]
@@ -76,13 +77,17 @@ pub(crate) struct JobArgs {
     pub(crate) json: bool,
 }
 
-/// The filters of the methods fir and fir-p2p.
+/// What some methods can be told.
 #[derive(Debug, Args)]
-pub(crate) struct FilterArgs {
+pub(crate) struct TuningArgs {
     /// Time constants of the filters of the methods fir and fir-p2p, s, as in 0.05,0.03 [default:
     /// those of the machine file, or notches on its modes, or as the limits and feedrates ask].
     #[arg(long, value_name = "T,T,...", value_parser = per_axis, allow_hyphen_values = true)]
     pub(crate) fir: Option<PerAxis>,
+    /// How much planning the method optimal may do: from 1, quick, to 9, hardly anything left to gain.
+    #[arg(long, value_name = "1-9", default_value_t = Effort::DEFAULT.level(),
+        value_parser = clap::value_parser!(u8).range(1..=9))]
+    pub(crate) effort: u8,
 }
 
 /// What to plan.
@@ -94,9 +99,9 @@ pub(crate) struct PlanArgs {
     /// How corners are taken.
     #[arg(long, default_value = METHODS[0].name, value_parser = methods())]
     pub(crate) method: String,
-    /// The filters.
+    /// What the method is told.
     #[command(flatten)]
-    pub(crate) filters: FilterArgs,
+    pub(crate) tuning: TuningArgs,
     /// Time between two set-points, s [default: that of the machine].
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) period: Option<f64>,
@@ -117,9 +122,9 @@ pub(crate) struct CompareArgs {
     /// Which methods, as in kcs,exact-stop [default: all but the reference].
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
     pub(crate) methods: Vec<String>,
-    /// The filters.
+    /// What the method is told.
     #[command(flatten)]
-    pub(crate) filters: FilterArgs,
+    pub(crate) tuning: TuningArgs,
     /// Draw the feedrates of the methods; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
@@ -134,9 +139,9 @@ pub(crate) struct ScoreArgs {
     /// Which methods, as in kcs,exact-stop [default: all but the reference itself].
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
     pub(crate) methods: Vec<String>,
-    /// The filters.
+    /// What the method is told.
     #[command(flatten)]
-    pub(crate) filters: FilterArgs,
+    pub(crate) tuning: TuningArgs,
     /// Intervals of time of the optimum, at least; more are finer and slower.
     #[arg(long, value_name = "COUNT", default_value_t = 240,
         value_parser = clap::value_parser!(u16).range(8..=2000))]

@@ -6,11 +6,10 @@
 use crate::args::CompareArgs;
 use crate::comparison::{Comparison, MethodRow};
 use crate::error::{CliError, DONE, OUTSIDE};
-use crate::filters;
 use crate::output::OutputFile;
 use crate::pipeline::Lane;
 use crate::plan::{moves, title, warn};
-use crate::planner::{EXACT_STOP, chosen, planner};
+use crate::planner::{EXACT_STOP, Tuning, chosen, planner};
 use crate::plot::{Caption, Feeds, Picture};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -52,10 +51,10 @@ where
         .map(|path| OutputFile::begin(path, &inputs))
         .transpose()?;
     let chosen = chosen(&args.methods);
-    let chain = filters::chain(&args.filters, setup)?;
+    let tuning = Tuning::of(&args.tuning, setup)?;
     let (start, limits) = (setup.start::<N>(), setup.limits::<N>());
     let lane = |method: &str| {
-        planner(method, start, limits, chain.as_ref())
+        planner(method, start, limits, &tuning)
             .map(|planner| Lane::new(planner, Judge::new(start, limits)))
     };
     let mut lanes = chosen

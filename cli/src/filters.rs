@@ -3,13 +3,13 @@
 //! Source: section 4.2.2. The command line goes before the machine file, time constants before modes;
 //! where none of them says anything, the planner chooses. Not here: the filters.
 
-use crate::args::FilterArgs;
+use crate::args::TuningArgs;
 use crate::error::CliError;
 use crate::setup::Setup;
 use toolglide_fir::{FilterChain, FirError, Mode};
 
 /// The chain of a run; `None` where the planner chooses.
-pub(crate) fn chain(args: &FilterArgs, setup: &Setup) -> Result<Option<FilterChain>, CliError> {
+pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterChain>, CliError> {
     let given = args.fir.as_ref().map(|given| given.0.as_slice());
     let time_constants = given.unwrap_or(&setup.time_constants);
     if !time_constants.is_empty() {

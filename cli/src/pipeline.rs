@@ -12,7 +12,7 @@ use crate::travel::{OnAxes, Travel};
 use std::io::BufRead;
 use std::time::{Duration, Instant};
 use toolglide_kinematics::verify::{Judge, Report};
-use toolglide_kinematics::{MotionPlanner, Move, Piece};
+use toolglide_kinematics::{MotionPlanner, Move, Piece, WindowTally};
 use toolglide_program::Program;
 
 /// Moves that are read before any of them is planned.
@@ -76,6 +76,7 @@ pub(crate) struct Outcome<R, const N: usize> {
     pub(crate) report: Report<N>,
     pub(crate) rows: u64,
     pub(crate) planning_time: Duration,
+    pub(crate) windows: Option<WindowTally>,
     pub(crate) plot: Option<Plot<N>>,
 }
 
@@ -105,12 +106,14 @@ where
                 break;
             }
         }
+        let windows = lane.windows();
         let (report, planning_time) = lane.finish();
         Ok(Outcome {
             program: self.moves.program,
             report,
             rows: self.set_points.finish()?,
             planning_time,
+            windows,
             plot: self.plot,
         })
     }
@@ -171,6 +174,11 @@ impl<const N: usize> Lane<N> {
             check_interrupt()?;
         }
         Ok(())
+    }
+
+    /// How the windows of the planner came out, if it has any.
+    pub(crate) fn windows(&self) -> Option<WindowTally> {
+        self.planner.windows()
     }
 
     /// The verdict, and how long the planner took.

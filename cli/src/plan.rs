@@ -5,10 +5,9 @@
 
 use crate::args::{JobArgs, PlanArgs};
 use crate::error::{CliError, DONE, OUTSIDE};
-use crate::filters;
 use crate::output::{OutputFile, same_file};
 use crate::pipeline::{Moves, Outcome, Pipeline};
-use crate::planner::planner;
+use crate::planner::{Tuning, planner};
 use crate::plot::{Caption, Picture, Plot};
 use crate::set_points::{Destination, SetPoints};
 use crate::setup::Setup;
@@ -115,7 +114,7 @@ where
         let (mut file, drawing) = begin(args, to_stdout)?;
         let start = setup.start::<N>();
         let limits = setup.limits::<N>();
-        let chain = filters::chain(&args.filters, setup)?;
+        let tuning = Tuning::of(&args.tuning, setup)?;
         let destination = match &mut file {
             Some(file) => {
                 let name = file.path().to_owned();
@@ -129,7 +128,7 @@ where
         };
         let outcome = Pipeline {
             moves: moves(&args.job, setup, source),
-            planner: planner(&args.method, start, limits, chain.as_ref())?,
+            planner: planner(&args.method, start, limits, &tuning)?,
             judge: Judge::new(start, limits),
             set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
             plot: drawing
@@ -142,6 +141,7 @@ where
         summary.method = Some(args.method.clone());
         summary.period_s = Some(setup.period.seconds());
         summary.planning_time_s = Some(outcome.planning_time.as_secs_f64());
+        summary.windows = outcome.windows.map(Into::into);
         warn(&outcome.program, err);
         let drawing = drawing
             .zip(picture)

@@ -2,10 +2,13 @@
 //!
 //! Everything else speaks to [`MotionPlanner`].
 
+use crate::args::TuningArgs;
 use crate::error::CliError;
-use crate::filters::refused;
+use crate::filters::{chain, refused};
+use crate::setup::Setup;
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
+use toolglide_optimal::{Effort, TimeOptimal};
 use toolglide_reference::ReferencePlanner;
 use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
 
@@ -23,6 +26,10 @@ pub const METHODS: &[MethodName] = &[
     MethodName {
         name: "kcs",
         summary: "the fastest it finds of everything: corners turned, stopped at, many fine ones superposed",
+    },
+    MethodName {
+        name: OPTIMAL,
+        summary: "the fastest motion inside tolerance and limits, planned in windows; kcs where that is faster",
     },
     MethodName {
         name: "kcs-uninterrupted",
@@ -62,6 +69,9 @@ pub const METHODS: &[MethodName] = &[
     },
 ];
 
+/// Time-optimal motion.
+const OPTIMAL: &str = "optimal";
+
 /// The baseline of spline corners.
 const BEZIER: &str = "bezier";
 
@@ -71,12 +81,31 @@ pub(crate) const REFERENCE: &str = "reference";
 /// The method that all others are measured by.
 pub(crate) const EXACT_STOP: &str = "exact-stop";
 
+/// What some methods can be told.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tuning {
+    /// The filters of the methods fir and fir-p2p; `None` where the planner chooses.
+    pub(crate) filters: Option<FilterChain>,
+    /// How much planning the method optimal may do.
+    pub(crate) effort: Effort,
+}
+
+impl Tuning {
+    /// What the command line and the machine say.
+    pub(crate) fn of(args: &TuningArgs, setup: &Setup) -> Result<Self, CliError> {
+        Ok(Self {
+            filters: chain(args, setup)?,
+            effort: Effort::new(args.effort).unwrap_or_default(),
+        })
+    }
+}
+
 /// The planner of a method, at rest at `start`.
 pub(crate) fn planner<const N: usize>(
     method: &str,
     start: Vector<N>,
     limits: Limits<N>,
-    filters: Option<&FilterChain>,
+    tuning: &Tuning,
 ) -> Result<Box<dyn MotionPlanner<N>>, CliError> {
     if let Some(method) = Method::find(method) {
         let settings = Settings::new(limits).with_method(method);
@@ -84,10 +113,14 @@ pub(crate) fn planner<const N: usize>(
     }
     if let Some(method) = toolglide_fir::Method::find(method) {
         let mut settings = toolglide_fir::Settings::new(limits).with_method(method);
-        if let Some(chain) = filters {
+        if let Some(chain) = &tuning.filters {
             settings = settings.with_chain(chain).map_err(refused)?;
         }
         return Ok(Box::new(FirInterpolation::new(start, &settings)));
+    }
+    if method == OPTIMAL {
+        let settings = toolglide_optimal::Settings::new(limits).with_effort(tuning.effort);
+        return Ok(Box::new(TimeOptimal::new(start, &settings)));
     }
     if method == BEZIER {
         return Ok(Box::new(BezierSmoothing::new(start, limits)));
@@ -130,13 +163,13 @@ mod tests {
         let limits = Limits::<2>::uniform(1.0, 1.0, 1.0).unwrap();
         for method in METHODS {
             assert!(
-                planner(method.name, Vector::zeros(), limits, None).is_ok(),
+                planner(method.name, Vector::zeros(), limits, &Tuning::default()).is_ok(),
                 "{}",
                 method.name
             );
         }
         assert!(
-            planner("spline", Vector::zeros(), limits, None).is_err(),
+            planner("spline", Vector::zeros(), limits, &Tuning::default()).is_err(),
             "unknown"
         );
     }

@@ -5,11 +5,10 @@
 
 use crate::args::ScoreArgs;
 use crate::error::{CliError, DONE, OUTSIDE};
-use crate::filters;
 use crate::interrupt::check_interrupt;
 use crate::output::OutputFile;
 use crate::plan::{moves, title, warn};
-use crate::planner::{chosen, planner};
+use crate::planner::{Tuning, chosen, planner};
 use crate::plot::{Caption, Contrast, Picture};
 use crate::progress::Steps;
 use crate::setup::Setup;
@@ -18,7 +17,6 @@ use crate::standing::{Loss, MethodStanding, Sample, Standing, Sums};
 use crate::travel::OnAxes;
 use std::io::Write;
 use std::path::Path;
-use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Limits, Move, Plan, Toolpath, Trajectory, verify};
 use toolglide_reference::{Course, Section, Settings, Window, Windows, certify, hold, part};
 use toolglide_reference::{Score, Sections};
@@ -79,9 +77,9 @@ where
     drop(moves);
     let sampled = windows.finish();
     let methods = chosen(&args.methods);
-    let chain = filters::chain(&args.filters, setup)?;
+    let tuning = Tuning::of(&args.tuning, setup)?;
     let job = Scorer {
-        filters: chain.as_ref(),
+        tuning: &tuning,
         program: &name,
         limits,
         methods: &methods,
@@ -154,7 +152,7 @@ struct Scorer<'a, const N: usize> {
     program: &'a str,
     limits: Limits<N>,
     methods: &'a [String],
-    filters: Option<&'a FilterChain>,
+    tuning: &'a Tuning,
     settings: Settings,
     certify: bool,
 }
@@ -318,7 +316,7 @@ impl<const N: usize> Scorer<'_, N> {
     }
 
     fn plan(&self, method: &str, window: &Window<N>) -> Result<Plan<N>, CliError> {
-        let mut planner = planner(method, window.start, self.limits, self.filters)?;
+        let mut planner = planner(method, window.start, self.limits, self.tuning)?;
         let mut plan = Plan::starting_at(window.start);
         for next in &window.moves {
             planner

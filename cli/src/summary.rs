@@ -5,6 +5,7 @@
 use crate::setup::Setup;
 use serde::Serialize;
 use std::fmt::Write;
+use toolglide_kinematics::WindowTally;
 use toolglide_kinematics::verify::{Peak, Report, Violation};
 
 /// What came out, as JSON names it.
@@ -38,8 +39,49 @@ pub(crate) struct Summary {
     pub(crate) feedrate_overshoot_mm_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) planning_time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) windows: Option<Windows>,
     pub(crate) violations: u64,
     pub(crate) worst: Vec<String>,
+}
+
+/// How the windows of a planner came out, as JSON names it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Windows {
+    pub(crate) planned: u64,
+    pub(crate) retried: u64,
+    pub(crate) kept_old_plan: u64,
+    pub(crate) stretches: u64,
+    pub(crate) stretches_by_kcs: u64,
+}
+
+impl From<WindowTally> for Windows {
+    fn from(tally: WindowTally) -> Self {
+        Self {
+            planned: tally.windows,
+            retried: tally.retried,
+            kept_old_plan: tally.kept,
+            stretches: tally.stretches,
+            stretches_by_kcs: tally.yielded,
+        }
+    }
+}
+
+impl Windows {
+    fn text(&self) -> String {
+        let mut text = format!(
+            "{}, of which {} kept the plan before",
+            self.planned, self.kept_old_plan
+        );
+        if self.stretches_by_kcs > 0 {
+            let _ = write!(
+                text,
+                "; {} of {} stretches between stops are faster by kcs",
+                self.stretches_by_kcs, self.stretches
+            );
+        }
+        text
+    }
 }
 
 impl Summary {
@@ -78,6 +120,7 @@ impl Summary {
             max_corner_error_share: report.corner_ratio.value,
             feedrate_overshoot_mm_s: report.feedrate_overshoot.value,
             planning_time_s: None,
+            windows: None,
             violations: report.violations,
             worst: worst_first(&report.examples),
         }
@@ -134,6 +177,9 @@ impl Summary {
         self.axes_table(&mut text);
         if let Some(time) = self.planning_time_s {
             let _ = writeln!(text, "planned in   {time:.3} s");
+        }
+        if let Some(windows) = &self.windows {
+            let _ = writeln!(text, "windows      {}", windows.text());
         }
         let verdict = match self.violations {
             0 => "verdict      every limit and tolerance is kept".to_owned(),

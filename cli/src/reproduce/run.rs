@@ -3,7 +3,7 @@
 use super::experiments::Course;
 use crate::error::CliError;
 use crate::pipeline::{Lane, Moves};
-use crate::planner::planner;
+use crate::planner::{Tuning, planner};
 use crate::summary::worst_first;
 use crate::travel::Travel;
 use toolglide_kinematics::verify::Judge;
@@ -77,7 +77,7 @@ impl Runs {
         };
         let start = Vector::<2>::zeros();
         let mut lane = Lane::new(
-            planner(method, start, limits, None)?,
+            planner(method, start, limits, &Tuning::default())?,
             Judge::new(start, limits),
         );
         let mut batch = Vec::new();
