@@ -24,7 +24,7 @@ mod stream;
 mod window;
 
 pub use durations::SequentialSolver;
-pub use planner::{TimeOptimal, plan_with};
+pub use planner::{TimeOptimal, plan, plan_with};
 pub use settings::{Effort, Settings};
 pub use window::{
     EndState, Segment, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSolver,
