@@ -8,8 +8,9 @@
 use crate::course::Course;
 use crate::error::ReferenceError;
 use crate::formulation::{Kind, Room};
-use crate::grid::{Grid, share};
+use crate::grid::Grid;
 use crate::motion::least_time;
+use crate::optimum::Settings;
 use crate::switches::{passes, times};
 use toolglide_kinematics::{Plan, Trajectory};
 
@@ -23,7 +24,8 @@ const SAME_PLACE: f64 = 1e-6;
 /// legs of its course as `motion` does: so no such motion, and above all not this one, is faster.
 ///
 /// Nothing is asked of who planned the motion. Where it leaves its leg by more than the tolerance, or
-/// leaves a slow move at the feedrate of the next, the bound allows every motion to do so there.
+/// leaves a slow move at the feedrate of the next, the bound allows every motion to do so there. There
+/// are about as many `intervals` of time, and more where there are many legs.
 ///
 /// # Errors
 /// [`ReferenceError::Elsewhere`] for a motion along another course, [`ReferenceError::NotSolved`]
@@ -40,8 +42,8 @@ pub fn lower_bound<const N: usize>(
     }
     let passes = passes(course, motion);
     let times = times(&passes, motion.duration());
-    let counts = share(&times, intervals, 1);
-    let grid = Grid::new(&times, &counts);
+    let settings = Settings::default().with_intervals(intervals).with_least(1);
+    let grid = Grid::new(&times, &settings.counts(&times));
     let room = Room {
         nodes: distances(course, motion, &grid),
         joins: passes

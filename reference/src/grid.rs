@@ -43,6 +43,14 @@ impl Grid {
         self.steps.iter().sum()
     }
 
+    /// How long the intervals of each leg last, s.
+    pub(crate) fn leg_times(&self) -> Vec<f64> {
+        let bounds = self.firsts.windows(2);
+        bounds
+            .map(|pair| self.steps[pair[0]..pair[1]].iter().sum())
+            .collect()
+    }
+
     /// The same intervals, all `factor` times as long.
     pub(crate) fn stretched(&self, factor: f64) -> Self {
         let mut grid = self.clone();

@@ -21,9 +21,14 @@ const MARGIN: f64 = 2e-4;
 /// How far a Bezier point may be outside the tolerance after all, mm: rounding.
 const OUTSIDE: f64 = 1e-9;
 
-/// Intervals beyond which legs get fewer than was asked for: a program of so many takes the solver
-/// about a second.
+/// Intervals for each leg on the average, at least.
+const PER_LEG: usize = 12;
+
+/// Intervals beyond which legs get fewer: a program of so many takes the solver about a second.
 const MOST_INTERVALS: usize = 1200;
+
+/// Legs from which on durations are sought on a coarse grid first.
+const MANY_LEGS: usize = 4;
 
 /// How finely the optimum is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +38,8 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// 240 intervals of time, and no less than six on a leg: 2e-4 of the duration is left between
-    /// motion and bound at a corner.
+    /// 240 intervals of time, more for more than twenty legs, and no less than six on a leg: 2e-4 of
+    /// the duration is left between motion and bound at a corner.
     fn default() -> Self {
         Self {
             intervals: 240,
@@ -58,10 +63,16 @@ impl Settings {
         self
     }
 
-    /// The same, with fewer intervals on each of very many legs, so that all of them stay within
-    /// [`MOST_INTERVALS`]; two on each are never refused.
-    pub(crate) fn for_legs(self, legs: usize) -> Self {
-        self.with_least(self.least.min((MOST_INTERVALS / legs.max(1)).max(2)))
+    /// How many intervals each leg has that lasts `times`: by duration, and no leg too few.
+    pub(crate) fn counts(&self, times: &[f64]) -> Vec<usize> {
+        let legs = times.len().max(1);
+        let wanted = self.intervals.max(PER_LEG * legs);
+        let intervals = wanted.min(self.intervals.max(MOST_INTERVALS));
+        share(
+            times,
+            intervals,
+            self.least.min((MOST_INTERVALS / legs).max(2)),
+        )
     }
 
     /// About how many intervals of time there are.
@@ -128,10 +139,8 @@ pub fn optimum<const N: usize>(
     starts: &[Vec<f64>],
     settings: &Settings,
 ) -> Result<Optimum<N>, ReferenceError> {
-    let settings = &settings.for_legs(course.legs());
     let mut optimum = upper_bound(course, starts, settings)?;
-    let counts = share(&optimum.times, settings.intervals, settings.least);
-    let grid = Grid::new(&optimum.times, &counts);
+    let grid = Grid::new(&optimum.times, &settings.counts(&optimum.times));
     if let Some(straight) = straight(course)
         && straight.duration() < optimum.duration()
     {
@@ -165,8 +174,16 @@ pub(crate) fn upper_bound<const N: usize>(
     let mut tried = Grid::new(&[], &[]);
     for times in starts {
         check(course, times)?;
-        let counts = share(times, settings.intervals, settings.least);
+        let counts = settings.counts(times);
         tried = Grid::new(times, &counts);
+        if course.legs() >= MANY_LEGS {
+            let coarse: Vec<_> = counts.iter().map(|count| count.div_ceil(2)).collect();
+            let coarse = Grid::new(times, &coarse);
+            if let Some(found) = best_durations(course, &coarse, Kind::Sampled, 0.0) {
+                let times = found.grid.leg_times();
+                tried = Grid::new(&times, &settings.counts(&times));
+            }
+        }
         let found = best_durations(course, &tried, Kind::Sampled, 0.0);
         best = match (best, found) {
             (Some(best), Some(found)) if found.duration < best.duration => Some(found),
@@ -180,12 +197,7 @@ pub(crate) fn upper_bound<const N: usize>(
     let plan = pieces(course, &enclosed.motion, &enclosed.grid.serves);
     keeps(course, &plan, &enclosed.grid)?;
     let slower = plan.duration() / enclosed.grid.duration();
-    let times = (0..course.legs())
-        .map(|leg| {
-            let range = enclosed.grid.firsts[leg]..enclosed.grid.firsts[leg + 1];
-            enclosed.grid.steps[range].iter().sum::<f64>() * slower
-        })
-        .collect();
+    let times = enclosed.grid.stretched(slower).leg_times();
     Ok(Optimum {
         plan,
         times,

@@ -93,8 +93,7 @@ impl<const N: usize> ReferencePlanner<N> {
             self.pieces.extend(straight.pieces(leg));
             return;
         }
-        let settings = self.settings.for_legs(course.legs());
-        match upper_bound(course, &[course.stopping_times()], &settings) {
+        match upper_bound(course, &[course.stopping_times()], &self.settings) {
             Ok(optimum) => self.pieces.extend(optimum.plan().pieces().iter().copied()),
             Err(_) => {
                 let (one, other) = course.halves();

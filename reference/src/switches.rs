@@ -11,8 +11,8 @@ use toolglide_kinematics::{Piece, Plan, Trajectory, Vector};
 const STEP: f64 = 1.0 / 16.0;
 
 /// Share by which the ball around a corner is larger than its tolerance: an approach that uses all of
-/// it is found in spite of rounding.
-const LARGER: f64 = 1e-6;
+/// it must not be stepped over.
+const LARGER: f64 = 0.5;
 
 /// How often the place of the closest approach is narrowed: to 1e-9 of a step.
 const NARROWINGS: usize = 43;

@@ -11,7 +11,7 @@ use toolglide_kinematics::{Limits, Move, PlanError, Vector};
 pub const WHOLE: usize = 256;
 
 /// Legs of a window of a longer program, at least.
-pub const WINDOW: usize = 64;
+pub const WINDOW: usize = 48;
 
 /// Windows that are kept at least, once there were more of them.
 const FEWEST: usize = 6;
