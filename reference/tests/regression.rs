@@ -19,10 +19,7 @@ fn near(name: &str, course: &Course<2>, intervals: usize, duration: f64, allowed
         (sampled - duration).abs() < allowed,
         "{name}: {sampled} s instead of {duration} s"
     );
-    assert!(
-        low <= high && sampled <= high,
-        "{name}"
-    );
+    assert!(low <= high && sampled <= high, "{name}");
     assert!(
         high - low < 2.0 * allowed,
         "{name}: the bounds {low} and {high} are far apart"
