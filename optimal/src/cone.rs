@@ -33,6 +33,15 @@ pub(crate) struct Reach {
     pub(crate) by_both: f64,
 }
 
+/// What the correcting step aims at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Centre {
+    /// Complementarity of every row.
+    pub(crate) complementarity: f64,
+    /// Share of the second order of the predicted step that is corrected.
+    pub(crate) second_order: f64,
+}
+
 /// One inequality: a quantity that must stay positive.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
@@ -60,10 +69,11 @@ impl Default for Side {
 }
 
 impl Side {
-    /// Starts at the value of the quantity, or inside where that is not.
-    pub(crate) fn reset(&mut self, value: f64) {
+    /// Starts at the value of the quantity, or inside where that is not; gives what is missing.
+    pub(crate) fn reset(&mut self, value: f64) -> f64 {
         self.slack = value.max(LEAST_SLACK);
         self.multiplier = 1.0 / self.slack;
+        self.slack - value
     }
 
     /// Takes the value of the quantity; gives weight and weighted residual.
@@ -91,10 +101,10 @@ impl Side {
         self.target = both;
     }
 
-    /// Weighted residual of the correcting step towards the complementarity `centre`.
+    /// Weighted residual of the correcting step towards a centre.
     #[inline(always)]
-    pub(crate) fn correct(&mut self, centre: f64) -> f64 {
-        self.target = (centre - self.target) / self.slack;
+    pub(crate) fn correct(&mut self, centre: Centre) -> f64 {
+        self.target = (centre.complementarity - centre.second_order * self.target) / self.slack;
         self.weight * self.residual - self.target
     }
 
@@ -299,7 +309,7 @@ impl<const N: usize> Default for Cone<N> {
 
 impl<const N: usize> Cone<N> {
     /// As [`Side::reset`].
-    pub(crate) fn reset(&mut self, value: &Pair<N>) {
+    pub(crate) fn reset(&mut self, value: &Pair<N>) -> f64 {
         self.slack = *value;
         self.slack.head = value.head.max(value.tail.norm() + LEAST_SLACK);
         let by_determinant = 1.0 / self.slack.determinant();
@@ -307,6 +317,7 @@ impl<const N: usize> Cone<N> {
             head: self.slack.head * by_determinant,
             tail: self.slack.tail * -by_determinant,
         };
+        self.slack.head - value.head
     }
 
     /// As [`Side::weigh`].
@@ -344,11 +355,11 @@ impl<const N: usize> Cone<N> {
 
     /// As [`Side::correct`].
     #[inline(always)]
-    pub(crate) fn correct(&mut self, centre: f64) -> Pair<N> {
+    pub(crate) fn correct(&mut self, centre: Centre) -> Pair<N> {
         let scaled = self.scaling.up(&self.multiplier);
         let product = Pair {
-            head: centre - self.target.head,
-            tail: -self.target.tail,
+            head: centre.complementarity - centre.second_order * self.target.head,
+            tail: self.target.tail * -centre.second_order,
         };
         self.target = self.scaling.down(&scaled.divide(&product));
         let residual = self.scaling.weight().times(&self.residual);

@@ -209,7 +209,7 @@ impl<const N: usize> SequentialSolver<N> {
         let restoring = matches!(goal, Goal::Restore { .. });
         let base = (self.base.states.as_slice(), self.base.jerks.as_slice());
         self.problem.set_base((!restoring).then_some(base));
-        let outcome = self.interior.solve(&self.problem, goal, precision);
+        let outcome = self.interior.solve(&mut self.problem, goal, precision);
         self.solves += 1;
         self.iterations += outcome.iterations;
         let used = match outcome.ending {

@@ -8,7 +8,7 @@
 //! Source: Mehrotra's method with the scaling of Nesterov and Todd. Not here: what to do with the
 //! stretches, see [`durations`](crate::durations).
 
-use crate::cone::{Reach, Side, Sums};
+use crate::cone::{Centre, Reach, Side, Sums};
 use crate::front::{Chain, Cost, Form, Gain, Gradient, Interval, Local, Slope, StretchGain};
 use crate::problem::{NodeRows, Problem, Visit};
 use crate::rows::Rows;
@@ -21,10 +21,13 @@ const LAST: usize = 3;
 /// Iterations after which a problem is given up.
 const MOST_ITERATIONS: u32 = 50;
 
+/// Where the predicted step is shorter, its second order says little about a step that can be gone.
+const SHORT_STEP: f64 = 0.1;
+
 /// Share of the way to the nearest bound that is gone.
 const STEP_SHARE: f64 = 0.995;
 
-/// The excess starts here: about what an unsolved window misses its bounds by.
+/// The excess starts here, or so much higher that all bounds are kept.
 const FIRST_EXCESS: f64 = 0.1;
 
 /// Least share of the complementarity to aim at.
@@ -33,8 +36,11 @@ const LEAST_CENTERING: f64 = 1e-6;
 /// Inequalities per unit of the objective: keeps multipliers near one.
 const ROWS_PER_UNIT: f64 = 20.0;
 
-/// Iterations without progress after which a problem is given up.
+/// Iterations without progress after which a problem is given up, and what steps are progress while
+/// something is missed.
 const MOST_STALLED: u32 = 8;
+const STALLED_STEP: f64 = 0.05;
+const SETTLED: f64 = 1e-6;
 
 /// What is to be minimised.
 #[derive(Clone, Copy, Debug)]
@@ -119,12 +125,17 @@ impl<const N: usize> Interior<N> {
     /// Solves a problem from the states and jerks at hand.
     pub(crate) fn solve(
         &mut self,
-        problem: &Problem<N>,
+        problem: &mut Problem<N>,
         goal: Goal,
         precision: &Precision,
     ) -> Outcome {
         let degree = problem.degree();
         let unit = degree / ROWS_PER_UNIT;
+        self.prepare(problem);
+        let shortening = problem.hold_durations();
+        self.straighten(problem, goal);
+        problem.free_durations(shortening);
+        let problem = &*problem;
         let floor = self.reset(problem, goal);
         let mut outcome = Outcome {
             ending: Ending::Stalled,
@@ -170,7 +181,14 @@ impl<const N: usize> Interior<N> {
                 + dual * reach.by_multiplier
                 + primal * dual * reach.by_both;
             let share = (predicted / sums.complementarity).clamp(0.0, 1.0).powi(3);
-            let centre = share.max(LEAST_CENTERING) * sums.complementarity / degree;
+            let centre = Centre {
+                complementarity: share.max(LEAST_CENTERING) * sums.complementarity / degree,
+                second_order: if primal.min(dual) < SHORT_STEP {
+                    primal * dual
+                } else {
+                    1.0
+                },
+            };
             self.correct(problem, goal, unit, precision.smoothing, centre);
             self.go(problem);
             let mut reach = Reach::default();
@@ -178,14 +196,18 @@ impl<const N: usize> Interior<N> {
             let primal = (STEP_SHARE / reach.primal.max(STEP_SHARE)).min(1.0);
             let dual = (STEP_SHARE / reach.dual.max(STEP_SHARE)).min(1.0);
             self.advance(problem, primal, dual);
+            if outcome.miss.max(unbound) > SETTLED && primal.max(dual) > STALLED_STEP {
+                stalled = 0;
+            }
             outcome.miss *= 1.0 - primal;
             unbound *= 1.0 - dual;
         }
     }
 
-    /// Starts all slacks and multipliers; gives the least excess.
-    fn reset(&mut self, problem: &Problem<N>, goal: Goal) -> f64 {
-        let steps = problem.steps();
+    /// Brings the workspace to size, and the ends of the motion to where they belong.
+    fn prepare(&mut self, problem: &Problem<N>) {
+        let (steps, segments) = (problem.steps(), problem.segments());
+        self.rows.clear();
         self.rows.resize(steps + 1, NodeRows::default());
         self.misses.resize(steps, [Vector::zeros(); 3]);
         self.gains.resize(steps, Gain::default());
@@ -195,40 +217,72 @@ impl<const N: usize> Interior<N> {
         self.states[0] = *problem.start();
         self.states[steps] = *problem.end();
         self.stretches.clear();
-        self.stretches.resize(problem.segments(), 0.0);
+        self.stretches.resize(segments, 0.0);
         self.stretch_changes.clear();
-        self.stretch_changes.resize(problem.segments(), 0.0);
-        self.stretch_gains
-            .resize(problem.segments(), StretchGain::default());
-        self.stretch_rows
-            .resize(problem.segments(), [Side::default(); 2]);
+        self.stretch_changes.resize(segments, 0.0);
+        self.stretch_gains.resize(segments, StretchGain::default());
+        self.stretch_rows.resize(segments, [Side::default(); 2]);
+        self.excess = 0.0;
+        self.excess_row = Side::default();
+    }
+
+    /// Makes the motion obey its dynamics: of all that do, the one that lies deepest inside its
+    /// bounds in the mean square.
+    fn straighten(&mut self, problem: &Problem<N>, goal: Goal) {
+        if self.weigh(problem, goal, 0.0, 0.0, 0.0, &mut Sums::default()) {
+            self.go(problem);
+            for (state, change) in self.states.iter_mut().zip(&self.state_changes) {
+                for (value, change) in state.iter_mut().zip(change) {
+                    *value += change;
+                }
+            }
+            for (jerk, change) in self.jerks.iter_mut().zip(&self.jerk_changes) {
+                *jerk += change;
+            }
+        }
+    }
+
+    /// Starts all slacks and multipliers; gives the least excess.
+    fn reset(&mut self, problem: &Problem<N>, goal: Goal) -> f64 {
         for (rows, trust) in self.stretch_rows.iter_mut().zip(&self.trust) {
             for row in rows {
                 row.reset(*trust);
             }
         }
-        self.excess = FIRST_EXCESS;
         let floor = match goal {
             Goal::Shorten { .. } => 0.0,
             Goal::Restore { .. } => -0.5,
         };
+        self.excess = FIRST_EXCESS;
+        self.excess += self.reset_rows(problem);
+        self.reset_rows(problem);
         self.excess_row.reset(self.excess - floor);
+        floor
+    }
+
+    /// Starts the rows of all nodes at the excess; gives how much more they need.
+    fn reset_rows(&mut self, problem: &Problem<N>) -> f64 {
+        let steps = problem.steps();
+        let mut needed = 0.0_f64;
         for node in 0..=steps {
             let mut start = Start {
                 state: &self.states[node],
                 excess: self.excess,
+                needed,
             };
             let rows = &mut self.rows[node];
             if node < steps {
-                rows.jerk
-                    .reset(problem.by_jerk(), &self.jerks[node], self.excess);
+                let jerk = &self.jerks[node];
+                let more = rows.jerk.reset(problem.by_jerk(), jerk, self.excess);
+                start.needed = start.needed.max(more);
                 problem.visit_ahead(node, rows, &mut start);
             }
             if node > 0 {
                 problem.visit_behind(node, rows, &mut start);
             }
+            needed = start.needed;
         }
-        floor
+        needed
     }
 
     /// Weighs all rows and eliminates; whether every pivot was positive.
@@ -492,14 +546,14 @@ impl<const N: usize> Interior<N> {
         self.excess_row.predict(excess, reach);
     }
 
-    /// Slopes towards the complementarity `centre`, eliminated with the gains at hand.
+    /// Slopes towards a centre, eliminated with the gains at hand.
     fn correct(
         &mut self,
         problem: &Problem<N>,
         goal: Goal,
         unit: f64,
         smoothing: f64,
-        centre: f64,
+        centre: Centre,
     ) {
         let steps = problem.steps();
         let first = steps - LAST;
@@ -563,7 +617,7 @@ impl<const N: usize> Interior<N> {
         problem: &Problem<N>,
         interval: usize,
         smoothing: f64,
-        centre: f64,
+        centre: Centre,
     ) -> Slope<N> {
         let by_jerk = problem.by_jerk();
         let mut slope = self.rows[interval].jerk.correct(by_jerk, centre);
@@ -644,12 +698,14 @@ fn weight_of_excess(goal: Goal) -> f64 {
 struct Start<'a, const N: usize> {
     state: &'a State<N>,
     excess: f64,
+    needed: f64,
 }
 
 impl<const N: usize> Visit<N> for Start<'_, N> {
     #[inline(always)]
     fn rows<R: Rows<N>>(&mut self, rows: &mut R, bound: &R::Bound, chain: &Chain<N>) {
-        rows.reset(bound, &chain.point(self.state, 0.0), self.excess);
+        let more = rows.reset(bound, &chain.point(self.state, 0.0), self.excess);
+        self.needed = self.needed.max(more);
     }
 }
 
@@ -686,7 +742,7 @@ impl<const N: usize> Visit<N> for Predict<'_, N> {
 }
 
 struct Correct<'a, const N: usize> {
-    centre: f64,
+    centre: Centre,
     gradient: &'a mut Gradient<N>,
 }
 
@@ -953,6 +1009,7 @@ mod tests {
                 problem.set_base(Some((&states, &jerks)));
             }
             let unit = problem.degree() / ROWS_PER_UNIT;
+            interior.prepare(&problem);
             let floor = interior.reset(&problem, goal);
             for iteration in 0..10 {
                 let mut sums = Sums::default();
@@ -978,7 +1035,10 @@ mod tests {
                 assert!(worst < 1e-6, "iteration {iteration}: {worst:e}");
                 let mut reach = Reach::default();
                 interior.predict(&problem, &mut reach);
-                let centre = 0.1 * sums.complementarity / problem.degree();
+                let centre = Centre {
+                    complementarity: 0.1 * sums.complementarity / problem.degree(),
+                    second_order: 1.0,
+                };
                 interior.correct(&problem, goal, unit, 1e-3, centre);
                 interior.go(&problem);
                 let mut reach = Reach::default();

@@ -205,6 +205,15 @@ impl<const N: usize> Problem<N> {
         }
     }
 
+    /// Fixes the durations for a while; gives whether they were free.
+    pub(crate) fn hold_durations(&mut self) -> bool {
+        std::mem::replace(&mut self.stretching, false)
+    }
+
+    pub(crate) fn free_durations(&mut self, free: bool) {
+        self.stretching = free;
+    }
+
     pub(crate) fn stretching(&self) -> bool {
         self.stretching
     }

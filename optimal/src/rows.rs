@@ -6,7 +6,7 @@
 //! `excess`, which the solver makes as small as it can. Not here: which point keeps what, see
 //! [`interior`](crate::interior).
 
-use crate::cone::{Cone, ConeWeight, Pair, Reach, Side, Sums};
+use crate::cone::{Centre, Cone, ConeWeight, Pair, Reach, Side, Sums};
 use crate::front::{Local, Slope};
 use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 
@@ -17,8 +17,8 @@ pub(crate) trait Rows<const N: usize> {
     /// What is kept.
     type Bound;
 
-    /// Starts inside.
-    fn reset(&mut self, bound: &Self::Bound, point: &Vector<N>, excess: f64);
+    /// Starts inside; gives how much more excess the point needs.
+    fn reset(&mut self, bound: &Self::Bound, point: &Vector<N>, excess: f64) -> f64;
 
     /// Takes the point; gives curvature and slope of the predicting step.
     fn weigh(
@@ -32,8 +32,8 @@ pub(crate) trait Rows<const N: usize> {
     /// Takes the predicting step.
     fn predict(&mut self, bound: &Self::Bound, change: &Vector<N>, excess: f64, reach: &mut Reach);
 
-    /// Slope of the correcting step towards the complementarity `centre`.
-    fn correct(&mut self, bound: &Self::Bound, centre: f64) -> Slope<N>;
+    /// Slope of the correcting step towards a centre.
+    fn correct(&mut self, bound: &Self::Bound, centre: Centre) -> Slope<N>;
 
     /// Takes the correcting step.
     fn aim(&mut self, bound: &Self::Bound, change: &Vector<N>, excess: f64, reach: &mut Reach);
@@ -64,12 +64,15 @@ impl<const N: usize> Default for InBox<N> {
 impl<const N: usize> Rows<N> for InBox<N> {
     type Bound = Bounds<N>;
 
-    fn reset(&mut self, bound: &Bounds<N>, point: &Vector<N>, excess: f64) {
+    fn reset(&mut self, bound: &Bounds<N>, point: &Vector<N>, excess: f64) -> f64 {
+        let mut needed = 0.0_f64;
         for axis in 0..N {
             let share = point[axis] * bound[axis];
-            self.upper[axis].reset(1.0 + excess - share);
-            self.lower[axis].reset(1.0 + excess + share);
+            needed = needed
+                .max(self.upper[axis].reset(1.0 + excess - share))
+                .max(self.lower[axis].reset(1.0 + excess + share));
         }
+        needed
     }
 
     #[inline(always)]
@@ -104,7 +107,7 @@ impl<const N: usize> Rows<N> for InBox<N> {
     }
 
     #[inline(always)]
-    fn correct(&mut self, bound: &Bounds<N>, centre: f64) -> Slope<N> {
+    fn correct(&mut self, bound: &Bounds<N>, centre: Centre) -> Slope<N> {
         let mut slope = Slope::default();
         for axis in 0..N {
             let upper = self.upper[axis].correct(centre);
@@ -178,8 +181,8 @@ impl<const N: usize> Default for InDisc<N> {
 impl<const N: usize> Rows<N> for InDisc<N> {
     type Bound = Disc<N>;
 
-    fn reset(&mut self, bound: &Disc<N>, point: &Vector<N>, excess: f64) {
-        self.cone.reset(&bound.value(point, excess));
+    fn reset(&mut self, bound: &Disc<N>, point: &Vector<N>, excess: f64) -> f64 {
+        self.cone.reset(&bound.value(point, excess))
     }
 
     #[inline(always)]
@@ -208,7 +211,7 @@ impl<const N: usize> Rows<N> for InDisc<N> {
     }
 
     #[inline(always)]
-    fn correct(&mut self, bound: &Disc<N>, centre: f64) -> Slope<N> {
+    fn correct(&mut self, bound: &Disc<N>, centre: Centre) -> Slope<N> {
         let residual = self.cone.correct(centre);
         Slope {
             point: residual.tail * bound.by_radius,
@@ -373,12 +376,13 @@ impl<const N: usize> InTube<N> {
 impl<const N: usize> Rows<N> for InTube<N> {
     type Bound = Tube<N>;
 
-    fn reset(&mut self, bound: &Tube<N>, point: &Vector<N>, excess: f64) {
+    fn reset(&mut self, bound: &Tube<N>, point: &Vector<N>, excess: f64) -> f64 {
         self.progress = bound.along(&(point - bound.start)).clamp(0.0, 1.0);
         let (low, high) = self.ends(bound, point, excess);
-        self.low.reset(low);
-        self.high.reset(high);
-        self.cone.reset(&bound.value(point, excess, self.progress));
+        let beyond = self.low.reset(low).max(self.high.reset(high));
+        let outside = self.cone.reset(&bound.value(point, excess, self.progress));
+        // The excess is of no use to the progress of a capsule.
+        outside.max(if bound.capsule { 0.0 } else { beyond })
     }
 
     #[inline(always)]
@@ -433,7 +437,7 @@ impl<const N: usize> Rows<N> for InTube<N> {
     }
 
     #[inline(always)]
-    fn correct(&mut self, bound: &Tube<N>, centre: f64) -> Slope<N> {
+    fn correct(&mut self, bound: &Tube<N>, centre: Centre) -> Slope<N> {
         let low = self.low.correct(centre);
         let high = self.high.correct(centre);
         let cone = self.cone.correct(centre);
