@@ -9,11 +9,12 @@ use crate::leg::{Dwell, Leg};
 use crate::merge::{MERGE_SHARE, Merger, ROUNDING_SHARE, Vertex};
 use crate::method::{Method, Settings};
 use crate::overlap::Between;
-use crate::pieces::{MOST_PIECES, corner_between, unroll_corner, unroll_leg};
+use crate::pieces::{MOST_PIECES, corner_between, cruise_on, unroll_corner, unroll_leg};
 use crate::select::Selection;
 use crate::turn::{Part, TurnShape};
 use crate::window::{Link, Window};
 use std::collections::VecDeque;
+use toolglide_kinematics::numeric::CLOSURE;
 use toolglide_kinematics::{Limits, Piece, Tolerance, Vector};
 
 /// Plans the corners of a stream of vertices, from rest to rest.
@@ -39,6 +40,8 @@ pub(crate) struct Corners<const N: usize> {
     last_offered: Option<Leg<N>>,
     /// How the next leg to be unrolled begins.
     from: Choice,
+    /// Distance on the last leg at which another motion takes over.
+    until: f64,
     pieces: VecDeque<Piece<N>>,
 }
 
@@ -69,24 +72,39 @@ impl<const N: usize> Corners<N> {
             last: None,
             last_offered: None,
             from: AT_REST,
+            until: f64::INFINITY,
             pieces: VecDeque::with_capacity(MOST_PIECES + 1),
         }
     }
 
     /// Begins again at rest at `start`; everything must have been closed and pulled.
     pub(crate) fn restart(&mut self, start: Vector<N>) {
+        self.restart_after(start, TurnShape::STOP);
+    }
+
+    /// Begins again on a leg, with a speed from which the leg has room for a stop.
+    pub(crate) fn restart_moving(&mut self, leg: Leg<N>, speed: f64) {
+        self.restart_after(leg.end, TurnShape::through(speed));
+        self.take_leg(leg);
+    }
+
+    fn restart_after(&mut self, start: Vector<N>, shape: TurnShape) {
         self.merger.restart(start);
         self.pending = None;
         for (window, scaled) in self.windows.iter_mut().zip(&mut self.scaled) {
-            window.restart();
+            window.restart_after(shape);
             scaled.clear();
         }
-        self.lattice.restart();
+        self.lattice.restart_after(shape);
         self.legs.clear();
         self.offered = 0;
         self.last = None;
         self.last_offered = None;
-        self.from = AT_REST;
+        self.from = Choice {
+            shape,
+            overlap: None,
+        };
+        self.until = f64::INFINITY;
         self.pieces.clear();
     }
 
@@ -147,6 +165,29 @@ impl<const N: usize> Corners<N> {
             self.offered += 1;
             self.lattice.finish();
         }
+    }
+
+    /// Whether the motion need not rest at the end of the last leg so far.
+    pub(crate) fn is_under_way(&self) -> bool {
+        self.pending.as_ref().is_some_and(|last| !last.stop)
+    }
+
+    /// After it has been closed: ends the motion where it cruises over a distance from the start of the
+    /// last leg, instead of bringing it to rest at its end, if it does so at this speed.
+    pub(crate) fn end_cruising(&mut self, start: &Vector<N>, distance: f64, speed: f64) -> bool {
+        let Some(leg) = self.legs.back().filter(|leg| leg.start == *start) else {
+            return false;
+        };
+        let from = self.lattice.before_last().unwrap_or(self.from);
+        let cruises = cruise_on(leg, &from.shape, &TurnShape::STOP).is_some_and(
+            |(cruising, [begin, end])| {
+                begin <= distance && distance <= end && (cruising - speed).abs() <= CLOSURE * speed
+            },
+        );
+        if cruises {
+            self.until = distance;
+        }
+        cruises
     }
 
     /// The next piece of finished motion.
@@ -279,9 +320,16 @@ impl<const N: usize> Corners<N> {
                     pieces.push_back(piece);
                 });
             }
-            _ => unroll_leg(&leg, &from.shape, &to.shape, |piece| {
-                pieces.push_back(piece)
-            }),
+            _ => {
+                let until = if next.is_none() {
+                    self.until
+                } else {
+                    f64::INFINITY
+                };
+                unroll_leg(&leg, &from.shape, &to.shape, until, |piece| {
+                    pieces.push_back(piece);
+                });
+            }
         }
         if let Some(pause) = leg.dwell {
             pieces.push_back(pause.piece(leg.end));

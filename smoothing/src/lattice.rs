@@ -73,15 +73,15 @@ impl Lattice {
             finished: false,
             last: None,
         };
-        lattice.restart();
+        lattice.restart_after(TurnShape::STOP);
         lattice
     }
 
-    /// Begins again at rest.
-    pub(crate) fn restart(&mut self) {
+    /// Begins again with the exit of a motion, from which a stop can be reached.
+    pub(crate) fn restart_after(&mut self, shape: TurnShape) {
         self.columns.clear();
         let mut first = Column::empty();
-        first.offer(TurnShape::STOP);
+        first.offer(shape);
         first.safe = 1;
         first.costs[0] = 0.0;
         self.columns.push_back(first);
@@ -125,6 +125,11 @@ impl Lattice {
     pub(crate) fn finish(&mut self) {
         self.finished = true;
         self.commit();
+    }
+
+    /// The motion chosen for the corner before the last that has been chosen.
+    pub(crate) fn before_last(&self) -> Option<Choice> {
+        self.chosen.iter().rev().nth(1).copied()
     }
 
     /// The motion chosen for the next corner.

@@ -6,26 +6,47 @@
 use crate::leg::Leg;
 use crate::turn::{Part, Turn, TurnShape};
 use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance};
-use toolglide_profiles::{Connection, Feed};
+use toolglide_profiles::{Connection, Feed, ProfileError};
 
 /// Most pieces of a leg, its corner and a pause.
 pub(crate) const MOST_PIECES: usize = 16;
 
-/// Unrolls the leg between two corner motions.
-pub(crate) fn unroll_leg<const N: usize>(
+/// Where on a leg the motion between two corner motions cruises: speed, and distances of the beginning
+/// and the end.
+pub(crate) fn cruise_on<const N: usize>(
     leg: &Leg<N>,
     from: &TurnShape,
     to: &TurnShape,
-    mut take: impl FnMut(Piece<N>),
-) {
+) -> Option<(f64, [f64; 2])> {
+    let feed = feed_on(leg, from, to).ok()?;
+    let [begin, end] = [3, 4].map(|phase| from.exit.distance + feed.starts()[phase].position);
+    Some((feed.starts()[3].velocity, [begin, end]))
+}
+
+fn feed_on<const N: usize>(
+    leg: &Leg<N>,
+    from: &TurnShape,
+    to: &TurnShape,
+) -> Result<Feed, ProfileError> {
     let connection = Connection {
         from: [from.exit.speed, from.exit.acceleration],
         to: [to.entry.speed, to.entry.acceleration],
         limits: leg.limits,
     };
+    let length = leg.length - from.exit.distance - to.entry.distance;
+    Feed::over(length.max(0.0), &connection)
+}
+
+/// Unrolls the leg between two corner motions, up to a distance at which it cruises.
+pub(crate) fn unroll_leg<const N: usize>(
+    leg: &Leg<N>,
+    from: &TurnShape,
+    to: &TurnShape,
+    until: f64,
+    mut take: impl FnMut(Piece<N>),
+) {
     let (reach, left) = (from.exit.distance, to.entry.distance);
-    let length = (leg.length - reach - left).max(0.0);
-    let feed = match Feed::over(length, &connection) {
+    let feed = match feed_on(leg, from, to) {
         Ok(feed) => feed,
         Err(error) => {
             debug_assert!(false, "the window promised that this fits: {error}");
@@ -58,11 +79,15 @@ pub(crate) fn unroll_leg<const N: usize>(
             acceleration: leg.direction * state.acceleration,
             jerk: leg.direction * state.jerk,
         };
-        let piece_end = if index == last {
-            end
-        } else {
-            at(reach + state.after(phase.duration).position)
-        };
+        let reached = reach + state.after(phase.duration).position;
+        if reached > until {
+            let duration = (until - reach - state.position) / state.velocity;
+            if duration > 0.0 {
+                take(Piece::new(&start, duration, at(until), leg.serves));
+            }
+            return;
+        }
+        let piece_end = if index == last { end } else { at(reached) };
         take(Piece::new(&start, phase.duration, piece_end, leg.serves));
     }
 }

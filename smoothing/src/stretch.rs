@@ -10,7 +10,8 @@ use crate::merge::{Merger, Vertex};
 use crate::method::Settings;
 use crate::superposed::{MOST_LEGS, Superposer};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Piece, Vector};
+use toolglide_kinematics::{Piece, Tangential, Vector};
+use toolglide_profiles::Rise;
 
 /// Share of the tolerance that cleaning the path may use: enough for rounding of programs and for the
 /// chords of arcs, and little enough that the curve stays fine.
@@ -18,6 +19,14 @@ pub(crate) const FINE_SHARE: f64 = 0.05;
 
 /// Sine of half the turn angle from which a corner is sharp: a turn of 25 degrees.
 const SHARP: f64 = 0.216;
+
+/// Share of the velocity of a leg at which superposed corners are entered on it.
+const ENTERING: f64 = 0.995;
+
+/// A stretch is planned without waiting for more of the path when it has so many legs and is longer than
+/// so many stops.
+const LEGS_AHEAD: usize = 512;
+const STOPS_AHEAD: f64 = 8.0;
 
 /// Fewest legs of a stretch worth trying.
 const FEWEST_LEGS: usize = 4;
@@ -33,7 +42,14 @@ pub(crate) struct Stretches<const N: usize> {
     corners: Corners<N>,
     trial: Corners<N>,
     superposer: Superposer<N>,
-    /// Where the stretch under way with superposed corners ends.
+    /// Legs, the first ones, over which the motion under way with superposed corners has been planned
+    /// already: it goes on from there if it can.
+    planned: usize,
+    /// Length of the legs that have not been planned, each as a share of what a stop takes on it.
+    ahead: f64,
+    /// Whether the corners have been closed and begin again at rest.
+    reopen: bool,
+    /// Where the motion that has been closed ends.
     end: Vector<N>,
     /// What waits until a stretch with superposed corners has been pulled.
     events: VecDeque<Event<N>>,
@@ -56,6 +72,9 @@ impl<const N: usize> Stretches<N> {
             corners: Corners::new(start, settings, MOST_LEGS),
             trial: Corners::new(start, settings, MOST_LEGS),
             superposer: Superposer::new(settings.limits),
+            planned: 0,
+            ahead: 0.0,
+            reopen: false,
             end: start,
             events: VecDeque::with_capacity(2 * MOST_LEGS + 8),
         }
@@ -97,16 +116,32 @@ impl<const N: usize> Stretches<N> {
 
     /// The next piece of finished motion.
     pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
-        if let Some(piece) = self.corners.pull() {
-            return Some(piece);
+        loop {
+            if let Some(piece) = self.corners.pull() {
+                return Some(piece);
+            }
+            // The corners before a stretch have been closed, and begin again at rest after it.
+            if let Some(piece) = self.superposer.pull() {
+                if self.superposer.is_done() {
+                    self.reopen = self.planned == 0;
+                    self.resume();
+                }
+                return Some(piece);
+            }
+            if !self.reopen {
+                return None;
+            }
+            self.resume();
         }
-        // The corners before a stretch have been closed, and begin again at rest after it.
-        let piece = self.superposer.pull()?;
-        if self.superposer.is_done() {
+    }
+
+    /// Begins again after a stretch.
+    fn resume(&mut self) {
+        if self.reopen {
+            self.reopen = false;
             self.corners.restart(self.end);
-            self.work();
         }
-        Some(piece)
+        self.work();
     }
 
     fn take(&mut self, event: Event<N>) {
@@ -117,6 +152,7 @@ impl<const N: usize> Stretches<N> {
     /// Works off what has come, up to the next stretch with superposed corners.
     fn work(&mut self) {
         while self.superposer.is_done()
+            && !self.reopen
             && let Some(event) = self.events.pop_front()
         {
             match event {
@@ -125,7 +161,7 @@ impl<const N: usize> Stretches<N> {
                 Event::Rest => {
                     // After whatever the stretch may put before it.
                     self.events.push_front(Event::Rest);
-                    self.settle();
+                    self.settle(Cause::Rest);
                 }
                 Event::Dwell(pause) => self.corners.dwell(pause),
                 Event::Close => self.corners.close(),
@@ -134,86 +170,219 @@ impl<const N: usize> Stretches<N> {
     }
 
     fn take_leg(&mut self, leg: Leg<N>) {
-        if let Some(last) = self.legs.last() {
+        if let Some(last) = self.legs.last()
+            && self.legs.len() > self.planned
+        {
             let half_sine = 0.5 * (leg.direction - last.direction).norm();
-            if half_sine > SHARP || self.legs.len() >= MOST_LEGS {
+            let cause = if half_sine > SHARP {
+                Some(Cause::Sharp)
+            } else if self.legs.len() >= MOST_LEGS || self.is_long() {
+                Some(Cause::Full)
+            } else {
+                None
+            };
+            if let Some(cause) = cause {
                 self.events.push_front(Event::Leg(leg));
-                self.settle();
+                self.settle(cause);
                 return;
             }
         }
+        self.ahead += stops_within(&leg);
         self.legs.push(leg);
     }
 
-    /// Plans the stretch that has been collected.
-    fn settle(&mut self) {
-        let legs = std::mem::take(&mut self.legs);
-        if let Some(last) = legs.last() {
-            let choice = if legs.len() < FEWEST_LEGS {
-                Choice::Corners
-            } else {
-                self.choose(&legs)
-            };
-            if choice != Choice::Superposed {
-                self.superposer.discard();
-            }
-            match choice {
-                Choice::Corners => {
-                    for leg in &legs {
-                        self.corners.push(vertex_of(leg));
-                    }
-                }
-                Choice::Superposed => {
-                    self.corners.close();
-                    self.end = last.end;
-                }
-                Choice::Apart => {
-                    let mut next: Option<&Leg<N>> = None;
-                    for leg in legs.iter().rev() {
-                        if next.is_some_and(|next| begins_a_move(leg, next)) {
-                            self.events.push_front(Event::Rest);
-                        }
-                        self.events.push_front(Event::Leg(*leg));
-                        next = Some(leg);
-                    }
-                }
-            }
-        }
-        self.legs = legs;
-        self.legs.clear();
+    /// Whether the legs that have not been planned reach so far that what follows matters little.
+    fn is_long(&self) -> bool {
+        self.legs.len() >= self.planned + LEGS_AHEAD && self.ahead > STOPS_AHEAD
     }
 
-    /// How a stretch is travelled fastest. With superposed corners it is planned when that is chosen.
+    /// Plans the stretch that has been collected.
+    fn settle(&mut self, cause: Cause) {
+        self.ahead = 0.0;
+        let mut legs = std::mem::take(&mut self.legs);
+        if self.planned > 0 {
+            self.go_on(&mut legs, cause);
+        } else {
+            self.set_out(&mut legs, cause);
+        }
+        self.legs = legs;
+    }
+
+    /// Plans a stretch from rest.
+    fn set_out(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+        match self.choose(legs) {
+            Choice::Corners => {
+                for leg in legs.iter() {
+                    self.corners.push(vertex_of(leg));
+                }
+                legs.clear();
+            }
+            Choice::Superposed => {
+                if !(self.corners.is_under_way() && self.enter(legs)) {
+                    self.corners.close();
+                }
+                if !legs.is_empty() {
+                    self.travel(legs, cause);
+                }
+            }
+            Choice::Apart => {
+                let mut next: Option<&Leg<N>> = None;
+                for leg in legs.iter().rev() {
+                    if next.is_some_and(|next| begins_a_move(leg, next)) {
+                        self.events.push_front(Event::Rest);
+                    }
+                    self.events.push_front(Event::Leg(*leg));
+                    next = Some(leg);
+                }
+                legs.clear();
+            }
+        }
+    }
+
+    /// Plans a stretch that has been planned from rest so that it is entered at speed, on its first leg;
+    /// `false` when that is not possible or not faster.
+    fn enter(&mut self, legs: &mut Vec<Leg<N>>) -> bool {
+        let [first, second, ..] = legs[..] else {
+            return false;
+        };
+        if !begins_a_move(&first, &second) {
+            return false;
+        }
+        let speed = ENTERING * first.limits.velocity;
+        let Tangential {
+            acceleration, jerk, ..
+        } = first.limits;
+        // The corner before it ends within its reach, and from whatever speed the rise is no longer.
+        let least = (0.5 * acceleration * acceleration / jerk).min(speed);
+        let distance = 0.5 * (speed + least) * (speed + least) / acceleration
+            + 4.0 * first.tolerance.length() / SHARP;
+        let rise = Rise::to_peak(0.0, 0.0, speed, acceleration, jerk);
+        let before = rise.duration() + (distance - rise.distance) / speed;
+        let most = self.superposer.planned() - before;
+        if self
+            .superposer
+            .plan_entering(legs, distance, speed, most)
+            .is_none()
+        {
+            return false;
+        }
+        self.corners.push(Vertex {
+            feedrate: speed,
+            ..vertex_of(&first)
+        });
+        self.corners.close();
+        if !self.corners.end_cruising(&first.start, distance, speed) {
+            // The motion rests at the end of the first leg.
+            for leg in legs.drain(1..).rev() {
+                self.events.push_front(Event::Leg(leg));
+            }
+            self.end = first.end;
+            legs.clear();
+            self.superposer.discard();
+            self.reopen = true;
+        }
+        true
+    }
+
+    /// Plans a stretch from where the motion under way may still go on, or else brings that to rest where
+    /// it was planned to.
+    fn go_on(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+        let fresh = &legs[self.planned..];
+        let apart = match cause {
+            _ if fresh.is_empty() => None,
+            // Where the stretch is not cut only for its length, corners, which have not to rest at its ends,
+            // may be faster.
+            Cause::Full => Some(self.by_corners(fresh)),
+            _ => match self.choose(fresh) {
+                Choice::Superposed => Some(self.superposer.planned()),
+                _ => None,
+            },
+        };
+        let most = apart.map(|apart| self.superposer.remaining() + apart);
+        if most.is_some_and(|most| self.superposer.plan_onward(legs, most).is_some()) {
+            self.travel(legs, cause);
+            return;
+        }
+        let is_last = fresh.is_empty();
+        for leg in legs.drain(self.planned..).rev() {
+            self.events.push_front(Event::Leg(leg));
+        }
+        self.planned = 0;
+        if let Some(last) = legs.pop() {
+            self.end = last.end;
+            legs.clear();
+            if !is_last
+                && apart.is_none()
+                && let Some((point, speed)) = self.superposer.leave()
+            {
+                let rest = Leg {
+                    start: point,
+                    length: (last.end - point).norm(),
+                    ..last
+                };
+                self.corners.restart_moving(rest, speed);
+                return;
+            }
+        }
+        self.superposer.finish();
+    }
+
+    /// Travels what has been planned with superposed corners.
+    fn travel(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+        if let Some(last) = legs.last() {
+            self.end = last.end;
+        }
+        let passed = if cause == Cause::Rest {
+            self.superposer.travel();
+            None
+        } else {
+            self.superposer.travel_openly()
+        };
+        match passed {
+            Some(passed) if legs.len() - passed <= MOST_LEGS / 2 => {
+                legs.drain(..passed);
+                self.planned = legs.len();
+            }
+            _ => {
+                self.superposer.finish();
+                legs.clear();
+                self.planned = 0;
+            }
+        }
+    }
+
+    /// How a stretch is travelled fastest from rest to rest. With superposed corners it is planned when
+    /// that is chosen.
     fn choose(&mut self, legs: &[Leg<N>]) -> Choice {
-        let ideal = Ideal::of(legs);
+        if legs.len() < FEWEST_LEGS {
+            return Choice::Corners;
+        }
         let by_corners = self.by_corners(legs);
-        let superposed = self.superpose(legs, &ideal, by_corners);
-        let best = superposed.unwrap_or(by_corners);
+        let mut best = by_corners;
         // Stops are among the choices at every corner, but not inside an arc, which begins and ends
         // afresh where the motion stops beside it.
         let has_arc = legs
             .windows(2)
             .any(|pair| pair[0].serves.first == pair[1].serves.last);
-        let several =
-            legs.first().map(|leg| leg.serves.first) != legs.last().map(|leg| leg.serves.last);
+        let several = legs
+            .windows(2)
+            .any(|pair| begins_a_move(&pair[0], &pair[1]));
+        let mut choice = Choice::Corners;
         if has_arc && several {
             let apart: f64 = legs
                 .chunk_by(|leg, next| !begins_a_move(leg, next))
                 .map(|group| self.alone(group))
                 .sum();
             if apart < best {
-                return Choice::Apart;
-            }
-            if superposed.is_some() {
-                // The moves by themselves have taken the place of the plan.
-                self.superpose(legs, &ideal, by_corners);
+                best = apart;
+                choice = Choice::Apart;
             }
         }
-        if superposed.is_some() {
-            Choice::Superposed
-        } else {
-            Choice::Corners
+        // Last, so that this is what has been planned.
+        if self.superpose(legs, &Ideal::of(legs), best).is_some() {
+            choice = Choice::Superposed;
         }
+        choice
     }
 
     /// Duration of a stretch by itself.
@@ -256,6 +425,17 @@ impl<const N: usize> Stretches<N> {
     }
 }
 
+/// Why a stretch ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    /// The motion must rest.
+    Rest,
+    /// The path turns sharply.
+    Sharp,
+    /// There is no room for more.
+    Full,
+}
+
 /// How a stretch is travelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
@@ -295,6 +475,12 @@ impl Ideal {
             .sum();
         Self { at_feedrate, stop }
     }
+}
+
+/// Length of a leg as a share of what a stop takes.
+fn stops_within<const N: usize>(leg: &Leg<N>) -> f64 {
+    let speed = leg.limits.velocity;
+    leg.length / (0.5 * speed * leg.limits.time_to_change(speed))
 }
 
 /// Whether a move of the path begins with `next`.

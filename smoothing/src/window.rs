@@ -75,11 +75,16 @@ impl Window {
 
     /// Begins again at rest.
     pub(crate) fn restart(&mut self) {
+        self.restart_after(TurnShape::STOP);
+    }
+
+    /// Begins again with the exit of a motion; whether a stop can be reached from it is not known.
+    pub(crate) fn restart_after(&mut self, shape: TurnShape) {
         self.nodes.clear();
         self.nodes.push_back(Node {
-            shape: TurnShape::STOP,
-            cap: 0.0,
-            upper: 0.0,
+            shape,
+            cap: 1.0,
+            upper: 1.0,
             witness: 0.0,
         });
         self.links.clear();

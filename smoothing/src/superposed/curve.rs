@@ -5,6 +5,15 @@
 use crate::leg::Leg;
 use toolglide_kinematics::{Serves, Vector};
 
+/// A control point and its place on the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Control<const N: usize> {
+    pub(super) point: Vector<N>,
+    pub(super) distance: f64,
+    pub(super) leg: usize,
+    pub(super) serves: Serves,
+}
+
 /// Straight legs end to end, found by the distance along them.
 #[derive(Clone, Debug)]
 pub(super) struct Curve<const N: usize> {
@@ -60,6 +69,29 @@ impl<const N: usize> Curve<N> {
         index
     }
 
+    /// The control point at a distance, searched from a leg nearby.
+    #[inline]
+    pub(super) fn control_at(&self, distance: f64, near: usize) -> Control<N> {
+        let leg = self.leg_at(distance, near);
+        Control {
+            point: self.point(distance, leg),
+            distance,
+            leg,
+            serves: self.legs[leg].serves,
+        }
+    }
+
+    /// The control point at the very end.
+    pub(super) fn end(&self) -> Control<N> {
+        let leg = self.legs.len() - 1;
+        Control {
+            point: self.legs[leg].end,
+            distance: self.length(),
+            leg,
+            serves: self.legs[leg].serves,
+        }
+    }
+
     /// The point at a distance on the leg that `leg_at` found; the ends beyond the curve.
     #[inline]
     pub(super) fn point(&self, distance: f64, leg: usize) -> Vector<N> {
@@ -71,14 +103,6 @@ impl<const N: usize> Curve<N> {
             at.end
         } else {
             at.start + at.direction * along
-        }
-    }
-
-    /// What the legs from one to another serve.
-    pub(super) fn serves(&self, first: usize, last: usize) -> Serves {
-        Serves {
-            first: self.legs[first].serves.first,
-            last: self.legs[last].serves.last,
         }
     }
 }

@@ -11,12 +11,13 @@
 mod curve;
 mod pace;
 mod spline;
+mod survey;
 
 use crate::leg::Leg;
-use curve::Curve;
-use pace::{Filter, Pace};
-use spline::{Control, Spline};
-use toolglide_kinematics::{Limits, Piece};
+use curve::{Control, Curve};
+use pace::{Filter, Handover, Pace};
+use spline::Spline;
+use toolglide_kinematics::{Limits, Piece, Vector};
 
 /// Most legs of one stretch.
 pub(crate) const MOST_LEGS: usize = 4096;
@@ -40,6 +41,20 @@ const FILTERS: [(f64, f64); 3] = [(0.4, 1.0), (0.2, 0.0), (0.1, 0.0)];
 /// A plan this near to the least conceivable time is not improved.
 const GOOD_ENOUGH: f64 = 1.02;
 
+/// How a motion goes on from a place where it neither gains nor loses speed.
+#[derive(Clone, Copy, Debug)]
+struct Onward<const N: usize> {
+    filter: Filter,
+    /// The last control points that are settled.
+    controls: [Control<N>; 3],
+    /// Progress at the last of them and one step later.
+    progress: [f64; 2],
+    /// From where the progress may be another; its time is counted from there.
+    start: Handover,
+    /// Time from there to the next step.
+    first: f64,
+}
+
 /// Plans stretches of superposed corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Superposer<const N: usize> {
@@ -47,23 +62,28 @@ pub(crate) struct Superposer<const N: usize> {
     curve: Curve<N>,
     pace: Pace,
     spline: Spline<N>,
+    /// The fastest plan of the stretch that was planned last.
     best: Spline<N>,
+    /// The plan that is travelled, the piece to be pulled next, and the first that may still become
+    /// another.
+    run: Spline<N>,
     next: usize,
+    until: usize,
+    onward: Option<Onward<N>>,
 }
 
 impl<const N: usize> Superposer<N> {
     pub(crate) fn new(limits: Limits<N>) -> Self {
-        let spline = || Spline {
-            controls: Vec::with_capacity(MOST_STEPS + 8),
-            step: 0.0,
-        };
         Self {
             limits,
             curve: Curve::with_capacity(MOST_LEGS + 1),
             pace: Pace::new(),
-            spline: spline(),
-            best: spline(),
+            spline: Spline::with_capacity(MOST_STEPS + 8),
+            best: Spline::with_capacity(MOST_STEPS + 8),
+            run: Spline::with_capacity(MOST_STEPS + 8),
             next: 0,
+            until: 0,
+            onward: None,
         }
     }
 
@@ -73,61 +93,173 @@ impl<const N: usize> Superposer<N> {
     /// `least` is a time that no motion can undercut.
     pub(crate) fn plan(&mut self, legs: &[Leg<N>], least: f64, most: f64) -> Option<f64> {
         self.curve.set(legs);
-        self.best.controls.clear();
-        self.next = 0;
-        let length = self.curve.length();
-        let (mut feedrate, mut jerk) = (0.0_f64, f64::INFINITY);
-        for leg in legs {
-            feedrate = feedrate.max(leg.limits.reachable_within(length));
-            jerk = jerk.min(leg.limits.jerk);
-        }
-        let ramp = (feedrate / jerk).sqrt();
-        let mut shortest = most;
+        let ramp = self.ramp(legs);
+        let mut shortest = None;
         for (share, sharpening) in FILTERS {
-            if shortest <= GOOD_ENOUGH * least {
+            let most = shortest.unwrap_or(most);
+            if shortest.is_some() && most <= GOOD_ENOUGH * least {
                 break;
             }
             let filter = Filter {
                 step: share * ramp,
                 sharpening,
             };
-            if self.attempt(&filter, ramp, shortest) {
-                shortest = self.spline.duration();
+            if self.attempt(&filter, ramp, most, None) {
+                shortest = Some(self.spline.duration());
                 std::mem::swap(&mut self.spline, &mut self.best);
             }
         }
-        (self.best.pieces() > 0).then(|| self.best.duration())
+        shortest
     }
 
-    /// The next piece of the stretch that was planned.
-    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
-        if self.next >= self.best.pieces() {
+    /// Plans the legs from where the motion that is travelled may still become another to rest, in less
+    /// than `most` seconds; the duration, or `None` when that cannot be done.
+    pub(crate) fn plan_onward(&mut self, legs: &[Leg<N>], most: f64) -> Option<f64> {
+        let onward = self.onward?;
+        self.curve.set(legs);
+        let ramp = self.ramp(legs);
+        if !self.attempt(&onward.filter, ramp, most, Some(&onward)) {
             return None;
         }
-        let piece = self.best.piece(self.next, &self.curve);
+        std::mem::swap(&mut self.spline, &mut self.best);
+        Some(self.best.duration())
+    }
+
+    /// Plans the legs as what was planned last, but entering at a distance on the first one at a constant
+    /// speed, in less than `most` seconds; the duration, or `None` when that cannot be done.
+    pub(crate) fn plan_entering(
+        &mut self,
+        legs: &[Leg<N>],
+        distance: f64,
+        speed: f64,
+        most: f64,
+    ) -> Option<f64> {
+        let step = self.best.step;
+        let advance = step * speed;
+        self.curve.set(legs);
+        if distance < advance || distance + 3.0 * advance > legs.first()?.length {
+            return None;
+        }
+        let ramp = self.ramp(legs);
+        let entering = Onward {
+            filter: Filter {
+                step,
+                sharpening: self.best.sharpening,
+            },
+            controls: [-1.0, 0.0, 1.0]
+                .map(|ticks| self.curve.control_at(distance + ticks * advance, 0)),
+            progress: [1.0, 2.0].map(|ticks| distance + ticks * advance),
+            start: Handover {
+                time: 0.0,
+                distance: distance + 2.0 * advance,
+                speed,
+            },
+            first: step,
+        };
+        if !self.attempt(&entering.filter, ramp, most, Some(&entering)) {
+            return None;
+        }
+        std::mem::swap(&mut self.spline, &mut self.best);
+        Some(self.best.duration())
+    }
+
+    /// Time in which the jerk changes the speed by what the legs allow.
+    fn ramp(&self, legs: &[Leg<N>]) -> f64 {
+        let length = self.curve.length();
+        let (mut feedrate, mut jerk) = (0.0_f64, f64::INFINITY);
+        for leg in legs {
+            feedrate = feedrate.max(leg.limits.reachable_within(length));
+            jerk = jerk.min(leg.limits.jerk);
+        }
+        (feedrate / jerk).sqrt()
+    }
+
+    /// Travels what was planned last, to its end.
+    pub(crate) fn travel(&mut self) {
+        std::mem::swap(&mut self.run, &mut self.best);
+        self.next = 0;
+        self.finish();
+    }
+
+    /// Travels what was planned last, as far as it does not matter what follows; the number of legs that
+    /// are then no longer needed. `None` when it is travelled to its end.
+    pub(crate) fn travel_openly(&mut self) -> Option<usize> {
+        self.travel();
+        let (settled, handover) = self.run.handover(&self.curve)?;
+        let (onward, legs) = self.run.onward(settled, &handover, &self.curve);
+        self.onward = Some(onward);
+        self.until = settled.saturating_sub(2);
+        Some(legs)
+    }
+
+    /// Travels the motion no further than to where it may still become another, when there it is on its
+    /// last leg and neither gains nor loses speed; the point and the speed.
+    pub(crate) fn leave(&mut self) -> Option<(Vector<N>, f64)> {
+        let control = self.run.controls.get(self.until + 1)?;
+        let last = self.run.controls.last()?;
+        let steady =
+            self.onward.is_some() && control.leg == last.leg && self.run.is_steady(self.until + 1);
+        steady.then(|| {
+            self.onward = None;
+            (control.point, self.run.speed(self.until + 1))
+        })
+    }
+
+    /// Travels the motion to its end after all.
+    pub(crate) fn finish(&mut self) {
+        self.until = self.run.pieces();
+        self.onward = None;
+    }
+
+    /// Forgets the motion that was travelled; all its pieces have been pulled.
+    pub(crate) fn discard(&mut self) {
+        self.onward = None;
+        self.next = self.until;
+    }
+
+    /// Duration of what was planned last.
+    pub(crate) fn planned(&self) -> f64 {
+        self.best.duration()
+    }
+
+    /// Duration of what may still become another motion.
+    pub(crate) fn remaining(&self) -> f64 {
+        self.run.duration_of(self.run.pieces() - self.until)
+    }
+
+    /// The next piece of the motion that is travelled.
+    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
+        if self.is_done() {
+            return None;
+        }
+        let piece = self.run.piece(self.next);
         self.next += 1;
         Some(piece)
     }
 
-    /// Whether all pieces of the stretch have been pulled.
+    /// Whether all pieces that will not become others have been pulled.
     pub(crate) fn is_done(&self) -> bool {
-        self.next >= self.best.pieces()
+        self.next >= self.until
     }
 
-    /// Forgets the stretch that was planned.
-    pub(crate) fn discard(&mut self) {
-        self.best.controls.clear();
-        self.next = 0;
-    }
-
-    fn attempt(&mut self, filter: &Filter, ramp: f64, most: f64) -> bool {
+    fn attempt(
+        &mut self,
+        filter: &Filter,
+        ramp: f64,
+        most: f64,
+        onward: Option<&Onward<N>>,
+    ) -> bool {
         // A change of speed overshoots by about this much when the control points are sharpened.
         let share = 1.0 - OVERSHOOT * (filter.step / ramp).powi(2);
-        if !self.pace.survey(&self.curve, &self.limits, filter, share) {
+        let start = onward.map_or(Handover::AT_REST, |onward| onward.start);
+        if !self
+            .pace
+            .survey(&self.curve, &self.limits, filter, &start, share)
+        {
             return false;
         }
         for _ in 0..ROUNDS {
-            if !self.propose(filter, most) {
+            if !self.propose(filter, most, onward) {
                 return false;
             }
             let mut kept = true;
@@ -140,6 +272,7 @@ impl<const N: usize> Superposer<N> {
                 }
             }
             if kept {
+                self.spline.handover = self.pace.handover();
                 return true;
             }
             self.pace.settle();
@@ -152,88 +285,64 @@ impl<const N: usize> Superposer<N> {
         clippy::cast_possible_truncation,
         clippy::cast_precision_loss,
         clippy::cast_sign_loss,
-        reason = "the count is clamped before it is cast"
+        reason = "the count is bounded before it is cast"
     )]
-    fn propose(&mut self, filter: &Filter, most: f64) -> bool {
+    fn propose(&mut self, filter: &Filter, most: f64, onward: Option<&Onward<N>>) -> bool {
         let Self {
             curve,
             pace,
             spline,
             ..
         } = self;
-        let legs = curve.legs();
-        let (Some(first), Some(last)) = (legs.first(), legs.last()) else {
-            return false;
-        };
         let Some(duration) = pace.arrange(filter.step) else {
             return false;
         };
-        if duration >= most {
+        if duration >= most || duration > filter.step * MOST_STEPS as f64 {
             return false;
         }
-        let steps = (duration / filter.step)
-            .round()
-            .clamp(FEWEST_STEPS, MOST_STEPS as f64);
-        spline.step = duration / steps;
-        let steps = steps as usize;
-        let begin = Control {
-            point: first.start,
-            distance: 0.0,
-            leg: 0,
-        };
-        let end = Control {
-            point: last.end,
-            distance: curve.length(),
-            leg: legs.len() - 1,
-        };
-        let controls = &mut spline.controls;
-        controls.clear();
-        controls.push(begin);
+        spline.clear(filter);
+        let mut first = 0.0;
+        let begin = curve.control_at(0.0, 0);
+        if let Some(onward) = onward {
+            spline.origin = onward.first - 4.0 * filter.step;
+            first = onward.first;
+            let [last, next] = onward.progress;
+            for (control, distance) in onward.controls.iter().zip([last, last, last]) {
+                spline.push(*control, distance);
+            }
+            spline.push(curve.control_at(next, onward.controls[2].leg), next);
+        } else {
+            // Whole steps from rest to rest.
+            let steps = (duration / filter.step).round().max(FEWEST_STEPS);
+            spline.step = duration / steps;
+            spline.origin = -spline.step;
+            spline.push(begin, 0.0);
+        }
+        let settled = spline.controls.len() - 1;
         let mut near = 0;
-        let complete = pace.walk(spline.step, |distance, _, _| {
-            near = curve.leg_at(distance, near);
-            controls.push(Control {
-                point: curve.point(distance, near),
-                distance,
-                leg: near,
-            });
-            controls.len() <= steps
+        pace.walk(first, spline.step, |distance, _, _| {
+            let control = curve.control_at(distance, near);
+            near = control.leg;
+            spline.push(control, distance);
+            spline.controls.len() <= MOST_STEPS
         });
-        if !complete && controls.len() <= steps {
-            return false;
+        let end = curve.end();
+        let length = curve.length();
+        if onward.is_none() {
+            // Rounding decides whether the last instant is among them.
+            let steps = (duration / spline.step).round() as usize;
+            spline.controls.truncate(steps + 1);
+            spline.progress.truncate(steps + 1);
         }
-        controls.resize(steps + 3, end);
-        controls[steps + 1] = end;
-        sharpen(controls, curve, filter.sharpening);
+        spline.push(end, length);
+        spline.push(end, length);
+        spline.sharpen(settled.max(1), curve, filter.sharpening);
         // Three equal control points are a rest.
-        controls[..3].fill(begin);
-        controls[steps..].fill(end);
-        true
-    }
-}
-
-/// Moves the control points so that the spline follows what they sample: along the path by all that
-/// the spline lags behind, across it by a share.
-fn sharpen<const N: usize>(controls: &mut [Control<N>], curve: &Curve<N>, share: f64) {
-    let Some(mut before) = controls.first().copied() else {
-        return;
-    };
-    for index in 1..controls.len() - 1 {
-        let here = controls[index];
-        let after = controls[index + 1];
-        let second = after.point - here.point * 2.0 + before.point;
-        let lag = (after.distance - 2.0 * here.distance + before.distance) / 6.0;
-        before = here;
-        // Rounding may not turn the order around.
-        let distance = (here.distance - lag)
-            .min(curve.length())
-            .max(controls[index - 1].distance);
-        let leg = curve.leg_at(distance, here.leg);
-        let along = curve.legs()[here.leg].direction * lag;
-        controls[index] = Control {
-            point: curve.point(distance, leg) - (second / 6.0 - along) * share,
-            distance,
-            leg,
-        };
+        let count = spline.controls.len();
+        if onward.is_none() {
+            spline.controls[..3].fill(begin);
+        }
+        spline.controls[count - 3..].fill(end);
+        spline.duration() < most
     }
 }

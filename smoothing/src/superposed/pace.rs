@@ -1,38 +1,31 @@
-//! How fast a stretch may be travelled, and the jerk-limited progress along it.
+//! The jerk-limited progress along a stretch.
 //!
-//! Source: ours. At constant speed the filtered motion through a place of the curve has the second
-//! and third differences of the points around it for acceleration and jerk, so the speed that a place
-//! allows is found by trying; the rest of the limits is left to changes of speed, which the look-ahead
-//! window plans as if the stretch were straight. What comes out is a proposal, judged elsewhere.
+//! Source: ours. Places allow speeds, and leave some of the limits to changes of speed, which the
+//! look-ahead window plans as if the stretch were straight; where the progress would still be too
+//! fast, it is held at constant speed. What comes out is a proposal, judged elsewhere. Not here: what a
+//! place allows.
 
 use super::curve::Curve;
 use super::spline::Excess;
+use super::survey::survey;
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
-use toolglide_kinematics::{Limits, Tangential, Vector, largest_multiple};
+use toolglide_kinematics::{Limits, Tangential};
 use toolglide_profiles::{Connection, Feed, Profile, State};
 
-/// Share of the acceleration that curvature may use.
-const CURVATURE_ACCELERATION: f64 = 0.85;
-/// Share of the jerk that changes of curvature may use.
-const CURVATURE_JERK: f64 = 0.7;
-/// Share of the tolerance that curvature may use.
-const CURVATURE_TOLERANCE: f64 = 0.8;
-/// Ratio of the speeds that are tried at a place.
-const LADDER: f64 = 0.95;
-/// Lowest speed tried, as a share of the feedrate.
-const LOWEST: f64 = 0.01;
 /// How much faster than a place allows the progress may be before it is held back there.
 const EXCESS: f64 = 1.01;
 /// Places whose speeds lie within this ratio are held as one.
 const ALIKE: f64 = 0.9;
 /// Places whose speeds lie within this ratio are travelled at the slowest of them.
 const SAME: f64 = 0.99;
+/// Share of the speed that a place allows from which the progress passes it at full speed.
+const FULL: f64 = 0.97;
+/// Places, half a time step each, over which the progress may go down to a slightly lower feedrate.
+const BRAKING: usize = 4;
 /// Rounds of holding the progress back.
 const ROUNDS: usize = 6;
-/// Share of the limits that changes of speed may use at the least.
-const LEAST_REST: f64 = 0.35;
 /// What a place is slowed by in one round beyond what its excess asks for.
 const SLOWER: f64 = 0.995;
 /// The most that a place is slowed by in one round.
@@ -53,7 +46,7 @@ pub(super) struct Filter {
 
 /// A part of the stretch with the speed and the changes of speed that it allows.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+pub(super) struct Place {
     end: f64,
     limits: Tangential,
     feedrate: f64,
@@ -62,9 +55,41 @@ struct Place {
     softer: f64,
 }
 
+impl Place {
+    pub(super) fn new(end: f64, limits: Tangential, feedrate: f64) -> Self {
+        Self {
+            end,
+            limits,
+            feedrate,
+            slower: 1.0,
+            softer: 1.0,
+        }
+    }
+}
+
+/// A place on a stretch at which the progress neither gains nor loses speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Handover {
+    /// Time since the beginning of the progress.
+    pub(super) time: f64,
+    pub(super) distance: f64,
+    pub(super) speed: f64,
+}
+
+impl Handover {
+    /// At rest at the beginning.
+    pub(super) const AT_REST: Self = Self {
+        time: 0.0,
+        distance: 0.0,
+        speed: 0.0,
+    };
+}
+
 /// Speeds along a stretch.
 #[derive(Clone, Debug)]
 pub(super) struct Pace {
+    /// Where the progress begins.
+    start: Handover,
     /// Share of the feedrate that is used, and what it must be lowered by next.
     share: f64,
     lower: f64,
@@ -80,6 +105,7 @@ pub(super) struct Pace {
 impl Pace {
     pub(super) fn new() -> Self {
         Self {
+            start: Handover::AT_REST,
             share: 1.0,
             lower: 1.0,
             places: Vec::with_capacity(MOST_PLACES + 1),
@@ -91,71 +117,28 @@ impl Pace {
         }
     }
 
-    /// Finds what each place of the curve allows at a share of the feedrate; `false` when there are too
-    /// many.
+    /// Finds what each place of the curve from a start on allows at a share of the feedrate; `false`
+    /// when there are too many places or none.
     pub(super) fn survey<const N: usize>(
         &mut self,
         curve: &Curve<N>,
         limits: &Limits<N>,
         filter: &Filter,
+        start: &Handover,
         share: f64,
     ) -> bool {
         self.places.clear();
         self.holds.clear();
+        self.start = *start;
         self.share = share;
         self.lower = 1.0;
-        let mut trial = Trial {
-            curve,
-            limits,
-            filter,
-            near: 0,
-        };
-        let mut last_speed = f64::INFINITY;
-        for (index, leg) in curve.legs().iter().enumerate() {
-            let feedrate = leg.limits.velocity * self.share;
-            let spacing = 0.5 * feedrate * filter.step;
-            let begin = curve.mark(index);
-            let pieces = (leg.length / spacing).ceil().max(1.0);
-            let width = leg.length / pieces;
-            let mut piece = 0.0;
-            while piece < pieces {
-                // The middle of a long leg is far from any curvature.
-                let straight = piece > 6.5 && pieces - piece > 8.5;
-                let end = if straight {
-                    let skipped = pieces - 8.0;
-                    let end = begin + skipped * width;
-                    piece = skipped;
-                    end
-                } else {
-                    piece += 1.0;
-                    begin + piece * width
-                };
-                let limits = if straight {
-                    last_speed = feedrate;
-                    Tangential {
-                        velocity: feedrate,
-                        ..leg.limits
-                    }
-                } else {
-                    let start = self.places.last().map_or(0.0, |place: &Place| place.end);
-                    trial.near = index;
-                    let limits = trial.limits_at(0.5 * (start + end), feedrate, last_speed);
-                    last_speed = limits.velocity;
-                    limits
-                };
-                if self.places.len() >= MOST_PLACES {
-                    return false;
-                }
-                self.places.push(Place {
-                    end,
-                    limits,
-                    feedrate: leg.limits.velocity,
-                    slower: 1.0,
-                    softer: 1.0,
-                });
+        survey(curve, limits, filter, self.start.distance, share, |place| {
+            let fits = self.places.len() < MOST_PLACES;
+            if fits {
+                self.places.push(place);
             }
-        }
-        true
+            fits
+        }) && !self.places.is_empty()
     }
 
     /// Notes that the places around a distance must be slowed.
@@ -187,6 +170,12 @@ impl Pace {
 
     /// Slows the places that were noted, each by the most that was asked of it.
     pub(super) fn settle(&mut self) {
+        if self.lower < 1.0 && self.start.speed > 0.0 && self.places.len() > BRAKING {
+            // What has been settled is too fast to be kept up.
+            self.holds.push(BRAKING);
+            self.holds.sort_unstable();
+            self.holds.dedup();
+        }
         self.share *= std::mem::replace(&mut self.lower, 1.0) - 4.0 * LIMIT_SLACK;
         for place in &mut self.places {
             place.limits.velocity *= std::mem::replace(&mut place.slower, 1.0);
@@ -197,7 +186,7 @@ impl Pace {
         }
     }
 
-    /// Plans the progress from rest to rest; its duration, or `None` when there is none.
+    /// Plans the progress from its start to rest; its duration, or `None` when there is none.
     pub(super) fn arrange(&mut self, step: f64) -> Option<f64> {
         for _ in 0..ROUNDS {
             self.link();
@@ -206,13 +195,59 @@ impl Pace {
             }
         }
         let mut duration = 0.0;
-        let mut from = 0.0;
+        let mut from = self.start.speed;
         for (index, link) in self.links.iter().enumerate() {
             let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
             duration += Self::feed(link, from, to)?.duration();
             from = to;
         }
         Some(duration)
+    }
+
+    /// The last place at which the progress neither gains nor loses speed and goes as fast as the place
+    /// allows; the fastest where there is none.
+    pub(super) fn handover(&self) -> Option<Handover> {
+        let mut best: Option<Handover> = None;
+        let mut full = false;
+        let mut begin = Handover {
+            time: 0.0,
+            ..self.start
+        };
+        let mut place = 0;
+        for (index, link) in self.links.iter().enumerate() {
+            let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
+            let feed = Self::feed(link, begin.speed, to)?;
+            let cruised = &feed.starts()[4];
+            let ends = [
+                Handover {
+                    time: begin.time
+                        + feed.phases()[..4]
+                            .iter()
+                            .map(|phase| phase.duration)
+                            .sum::<f64>(),
+                    distance: begin.distance + cruised.position,
+                    speed: cruised.velocity,
+                },
+                Handover {
+                    time: begin.time + feed.duration(),
+                    distance: begin.distance + link.length,
+                    speed: to,
+                },
+            ];
+            for end in ends {
+                while place + 1 < self.places.len() && self.places[place].end < end.distance {
+                    place += 1;
+                }
+                let is_full = end.speed >= FULL * self.places[place].limits.velocity;
+                let better = best.is_none_or(|best| end.speed > best.speed);
+                if end.speed > 0.0 && (is_full || (!full && better)) {
+                    best = Some(end);
+                    full |= is_full;
+                }
+            }
+            begin = ends[1];
+        }
+        best
     }
 
     fn feed(link: &Link, from: f64, to: f64) -> Option<Feed> {
@@ -224,9 +259,20 @@ impl Pace {
         Feed::over(link.length, &connection).ok()
     }
 
-    /// Gives distance, speed and link at each multiple of `step`.
-    pub(super) fn walk(&self, step: f64, mut take: impl FnMut(f64, f64, usize) -> bool) -> bool {
-        let (mut begin, mut time, mut tick, mut from) = (0.0, 0.0, 0.0, 0.0);
+    /// Gives distance, speed and link at each multiple of `step` after a first instant; `false` when
+    /// `take` has had enough.
+    pub(super) fn walk(
+        &self,
+        first: f64,
+        step: f64,
+        mut take: impl FnMut(f64, f64, usize) -> bool,
+    ) -> bool {
+        let Handover {
+            distance: mut begin,
+            speed: mut from,
+            ..
+        } = self.start;
+        let (mut time, mut tick) = (0.0, 0.0);
         for (index, link) in self.links.iter().enumerate() {
             let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
             let Some(feed) = Self::feed(link, from, to) else {
@@ -236,11 +282,11 @@ impl Pace {
             for phase in feed.phases() {
                 state.jerk = phase.jerk;
                 let end = time + phase.duration;
-                while tick * step < end {
+                while first + tick * step < end {
                     if tick > MOST_TICKS {
                         return false;
                     }
-                    let now = state.after(tick * step - time);
+                    let now = state.after(first + tick * step - time);
                     if !take(begin + now.position, now.velocity, index) {
                         return false;
                     }
@@ -263,7 +309,7 @@ impl Pace {
         let mut place = 0;
         let mut run: Option<(usize, usize)> = None;
         let mut current = 0;
-        self.walk(step, |distance, speed, link| {
+        self.walk(0.0, step, |distance, speed, link| {
             while place + 1 < self.places.len() && self.places[place].end < distance {
                 place += 1;
             }
@@ -301,9 +347,14 @@ impl Pace {
     fn link(&mut self) {
         self.links.clear();
         self.turns.clear();
-        self.window.restart();
+        if self.start.speed > 0.0 {
+            self.window
+                .restart_after(TurnShape::through(self.start.speed));
+        } else {
+            self.window.restart();
+        }
         let mut first = 0;
-        let mut start = 0.0;
+        let mut start = self.start.distance;
         let ends = self.holds.iter().copied().chain([self.places.len()]);
         for end in ends {
             let group = &self.places[first..end];
@@ -320,6 +371,10 @@ impl Pace {
             }
             if slowest >= SAME * limits.velocity {
                 limits.velocity = slowest;
+            }
+            if first == 0 {
+                // What has been settled cannot be slowed any more.
+                limits.velocity = limits.velocity.max(self.start.speed);
             }
             let link = Link {
                 length: last.end - start,
@@ -342,97 +397,5 @@ impl Pace {
         while let Some(turn) = self.window.pull() {
             self.turns.push(turn);
         }
-    }
-}
-
-/// Tries speeds at places of a curve.
-struct Trial<'a, const N: usize> {
-    curve: &'a Curve<N>,
-    limits: &'a Limits<N>,
-    filter: &'a Filter,
-    near: usize,
-}
-
-impl<const N: usize> Trial<'_, N> {
-    /// The largest speed of the ladder that the place allows, and what it leaves to changes of speed.
-    fn limits_at(&self, distance: f64, feedrate: f64, guess: f64) -> Tangential {
-        let try_at = |speed: f64| {
-            let [second, third] = self.differences(distance, speed);
-            self.fits(distance, &second, &third)
-                .then(|| self.rest(distance, speed, &second, &third))
-        };
-        let mut speed = guess.min(feedrate);
-        if let Some(mut found) = try_at(speed) {
-            while speed < feedrate {
-                let faster = (speed / LADDER).min(feedrate);
-                let Some(better) = try_at(faster) else {
-                    return try_at(0.5 * (speed + faster)).unwrap_or(found);
-                };
-                found = better;
-                speed = faster;
-            }
-            return found;
-        }
-        loop {
-            speed *= LADDER;
-            if let Some(found) = try_at(speed) {
-                return try_at(0.5 * speed * (1.0 + 1.0 / LADDER)).unwrap_or(found);
-            }
-            if speed < LOWEST * feedrate {
-                let [second, third] = self.differences(distance, speed);
-                return self.rest(distance, speed, &second, &third);
-            }
-        }
-    }
-
-    /// Second and third difference of the control points around a distance.
-    fn differences(&self, distance: f64, speed: f64) -> [Vector<N>; 2] {
-        let reach = speed * self.filter.step;
-        let at = |share: f64| {
-            let distance = distance + share * reach;
-            self.curve
-                .point(distance, self.curve.leg_at(distance, self.near))
-        };
-        let second = at(1.0) - at(0.0) * 2.0 + at(-1.0);
-        let third = at(1.5) - at(0.5) * 3.0 + at(-0.5) * 3.0 - at(-1.5);
-        let amplified = self.filter.sharpening;
-        [
-            second * (1.0 + amplified / 3.0),
-            third * (1.0 + 0.5 * amplified),
-        ]
-    }
-
-    fn fits(&self, distance: f64, second: &Vector<N>, third: &Vector<N>) -> bool {
-        let step = self.filter.step;
-        let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
-        let off = second.norm() * (1.0 - self.filter.sharpening).max(0.25) / 6.0;
-        largest_multiple(second, self.limits.acceleration()) * CURVATURE_ACCELERATION * step * step
-            >= 1.0
-            && largest_multiple(third, self.limits.jerk()) * CURVATURE_JERK * step.powi(3) >= 1.0
-            && off <= CURVATURE_TOLERANCE * leg.room().length()
-    }
-
-    /// What curvature leaves of the limits along the path.
-    fn rest(&self, distance: f64, speed: f64, second: &Vector<N>, third: &Vector<N>) -> Tangential {
-        let step = self.filter.step;
-        let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
-        let mut rest = Tangential {
-            velocity: speed,
-            ..leg.limits
-        };
-        let used = |difference: f64, bound: f64| (bound - difference.abs()).max(LEAST_REST * bound);
-        for axis in 0..N {
-            let share = leg.direction[axis].abs();
-            if share > 0.0 {
-                let acceleration = used(
-                    second[axis] / (step * step),
-                    self.limits.acceleration()[axis],
-                );
-                let jerk = used(third[axis] / step.powi(3), self.limits.jerk()[axis]);
-                rest.acceleration = rest.acceleration.min(acceleration / share);
-                rest.jerk = rest.jerk.min(jerk / share);
-            }
-        }
-        rest
     }
 }
