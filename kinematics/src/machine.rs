@@ -5,9 +5,11 @@
 
 use crate::axis_vector::{AxisVector, Solutions};
 use crate::limits::AxisLimits;
+use crate::numeric::ANGLE_SLACK;
 use crate::pose::ToolPose;
 use crate::sample::SamplePeriod;
 use crate::tolerance::Tolerance;
+use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
 /// What an axis moves in.
@@ -67,14 +69,39 @@ pub trait MachineKinematics: Send + Sync {
     ///
     /// Nearest counts the rotary axes: each is taken on the turn nearest to `near`, and among the
     /// branches the one with the least sum of squares. Where a rotary axis does not matter, as at
-    /// the pole of a rotary table, it stays as in `near`. So calling this with the positions before
-    /// follows a motion without a jump as long as there is a way. It does not allocate.
+    /// the pole of a rotary table, it stays as in `near`. Where the nearest turn is beyond the travel,
+    /// the nearest within is taken, which is right for a new start and a jump in the midst of a
+    /// motion: for that there is [`MachineKinematics::follow`]. It does not allocate.
     ///
     /// # Errors
     /// [`KinematicsError::Unreachable`] or [`KinematicsError::Reach`] when the machine cannot take
     /// the pose, [`KinematicsError::Travel`] when an axis would leave its travel, and what
     /// [`MachineKinematics::forward`] says of `near`.
     fn inverse(&self, pose: &ToolPose, near: &AxisVector) -> Result<AxisVector, KinematicsError>;
+
+    /// As [`MachineKinematics::inverse`], for a pose a small motion away from `near`: an axis that
+    /// would have to turn back by a whole turn to stay within its travel has reached its end.
+    ///
+    /// # Errors
+    /// As [`MachineKinematics::inverse`]; [`KinematicsError::Travel`] names the axis that has come
+    /// to its end, and where it would have gone.
+    fn follow(&self, pose: &ToolPose, near: &AxisVector) -> Result<AxisVector, KinematicsError> {
+        let axes = self.inverse(pose, near)?;
+        for (axis, (&position, &before)) in self.axes().iter().zip(axes.iter().zip(near.iter())) {
+            let step = position - before;
+            if axis.kind == AxisKind::Rotary && step.abs() > PI + ANGLE_SLACK {
+                let (low, high) = axis.travel.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+                return Err(KinematicsError::Travel {
+                    axis: axis.name,
+                    kind: axis.kind,
+                    position: position - TAU * (step / TAU).round(),
+                    low,
+                    high,
+                });
+            }
+        }
+        Ok(axes)
+    }
 
     /// The axis positions of every branch that can take `pose` within travel, the nearest to `near`
     /// first. It does not allocate.
