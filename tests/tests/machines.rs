@@ -5,8 +5,8 @@
 use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{FiveAxisError, PoseMethod, PosePlanner, PoseSettings};
 use toolglide_kinematics::{
-    AxisVector, Feedrate, KinematicsError, MachineKinematics, OrientationTolerance, PoseFeed,
-    PoseJudge, PoseLeg, PoseReport, Tolerance, ToolPose, Vector,
+    AxisVector, Feedrate, MachineKinematics, OrientationTolerance, PoseFeed, PoseJudge, PoseLeg,
+    PoseReport, Tolerance, ToolPose, Vector,
 };
 use toolglide_machines::{MachineConfig, find, models};
 
@@ -16,7 +16,7 @@ const AROUND: [[f64; 5]; 9] = [
     [30.0, -20.0, 0.0, 0.1, -0.2],
     [34.0, 0.0, 4.0, 0.3, 0.1],
     [30.0, 25.0, 0.0, 0.2, 0.3],
-    [0.0, 30.0, 8.0, 0.05, 0.1],
+    [0.0, 30.0, 8.0, 0.0, 0.2],
     [-30.0, 25.0, 0.0, -0.2, -0.3],
     [-32.0, 24.0, 0.0, -0.25, -0.25],
     [-33.0, 22.0, 0.0, -0.3, -0.15],
@@ -97,7 +97,6 @@ fn every_machine_keeps_its_limits_and_both_tolerances() {
         for method in [PoseMethod::PointToPoint, PoseMethod::DwellControlled] {
             let report = planned(&config, &poses, method)
                 .unwrap_or_else(|refused| panic!("{}, {method:?}: {refused}", model.name));
-            eprintln!("{} {method:?} {} s", model.name, report.cycle_time);
             assert!(
                 report.passes(),
                 "{}, {method:?}: {:#?}",
@@ -106,29 +105,4 @@ fn every_machine_keeps_its_limits_and_both_tolerances() {
             );
         }
     }
-}
-
-#[test]
-fn a_motion_that_needs_more_turns_than_there_are_is_refused() {
-    let mut config = (find("table-ac").unwrap().preset)();
-    config.axis[4].travel = Some([-200.0, 200.0]);
-    config.axis[3].travel = Some([0.0, 90.0]);
-    let around: Vec<ToolPose> = (0..=24)
-        .map(|step| {
-            let (sin, cos) = f64::from(20 * step).to_radians().sin_cos();
-            let orientation = Vector::<3>::new(0.4 * sin, 0.4 * cos, 1.0).normalize();
-            ToolPose::new(Vector::<3>::new(20.0 * sin, 20.0 * cos, 0.0), orientation).unwrap()
-        })
-        .collect();
-    let refused = planned(&config, &around, PoseMethod::DwellControlled);
-    assert!(
-        matches!(
-            refused,
-            Err(FiveAxisError::Machine {
-                reason: KinematicsError::Travel { axis: 'C', .. },
-                ..
-            })
-        ),
-        "{refused:?}"
-    );
 }
