@@ -45,7 +45,7 @@ pub(crate) enum Command {
 /// The program, and the limits that its motion must keep.
 #[derive(Debug, Args)]
 pub(crate) struct JobArgs {
-    /// Part program (RS274/NGC); - reads standard input.
+    /// Part program (RS274/NGC, or tool poses in .apt, .cls or .ncl); - reads standard input.
     #[arg(value_name = "PROGRAM")]
     pub(crate) program: PathBuf,
     /// Registered machine, or machine file.
@@ -90,15 +90,35 @@ pub(crate) struct TuningArgs {
     pub(crate) effort: u8,
 }
 
+/// What tool poses need beside a program of straight axes.
+#[derive(Debug, Args)]
+pub(crate) struct PoseArgs {
+    /// Tolerance of the tool tip, mm: another name of --tolerance.
+    #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true, conflicts_with = "tolerance")]
+    pub(crate) tip_tolerance: Option<f64>,
+    /// How far the tool may turn away from its path, rad.
+    #[arg(long, value_name = "RAD", value_parser = positive, allow_hyphen_values = true, default_value_t = 0.001)]
+    pub(crate) orientation_tolerance: f64,
+    /// Largest rate at which the tool turns, rad/s [default: what the axes allow].
+    #[arg(long, value_name = "RAD/S", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) turn_rate: Option<f64>,
+    /// Poses that ns-jcb puts between those of the program, on every move.
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    pub(crate) way_points: u32,
+}
+
 /// What to plan.
 #[derive(Debug, Args)]
 pub(crate) struct PlanArgs {
     /// The program and the limits.
     #[command(flatten)]
     pub(crate) job: JobArgs,
-    /// How corners are taken.
-    #[arg(long, default_value = METHODS[0].name, value_parser = methods())]
-    pub(crate) method: String,
+    /// How corners are taken [default: kcs, and ns-dcb for tool poses].
+    #[arg(long, value_parser = all_methods())]
+    pub(crate) method: Option<String>,
+    /// How tool poses are planned.
+    #[command(flatten)]
+    pub(crate) poses: PoseArgs,
     /// What the method is told.
     #[command(flatten)]
     pub(crate) tuning: TuningArgs,
@@ -108,6 +128,9 @@ pub(crate) struct PlanArgs {
     /// Write the set-points as CSV to a file; - is standard output.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) output: Option<PathBuf>,
+    /// Write the tool pose behind the axes of every set-point; for machines with rotary axes.
+    #[arg(long)]
+    pub(crate) pose: bool,
     /// Draw the motion; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
@@ -193,6 +216,9 @@ pub(crate) struct VerifyArgs {
     /// The program and the limits.
     #[command(flatten)]
     pub(crate) job: JobArgs,
+    /// How far the tool may turn away from its path, rad; for machines with rotary axes.
+    #[arg(long, value_name = "RAD", value_parser = positive, allow_hyphen_values = true, default_value_t = 0.001)]
+    pub(crate) orientation_tolerance: f64,
     /// Set-points to judge: CSV with the columns t_s, x_mm, y_mm, z_mm.
     #[arg(value_name = "SETPOINTS.csv")]
     pub(crate) set_points: PathBuf,
@@ -216,6 +242,15 @@ fn methods() -> PossibleValuesParser {
     PossibleValuesParser::new(
         METHODS
             .iter()
+            .map(|method| PossibleValue::new(method.name).help(method.summary)),
+    )
+}
+
+fn all_methods() -> PossibleValuesParser {
+    PossibleValuesParser::new(
+        METHODS
+            .iter()
+            .chain(crate::poses::METHODS)
             .map(|method| PossibleValue::new(method.name).help(method.summary)),
     )
 }

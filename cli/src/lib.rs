@@ -18,6 +18,7 @@ mod pipeline;
 mod plan;
 mod planner;
 mod plot;
+mod poses;
 mod progress;
 mod reproduce;
 mod score;

@@ -7,7 +7,7 @@ use crate::args::{JobArgs, PlanArgs};
 use crate::error::{CliError, DONE, OUTSIDE};
 use crate::output::{OutputFile, same_file};
 use crate::pipeline::{Moves, Outcome, Pipeline};
-use crate::planner::{Tuning, planner};
+use crate::planner::{METHODS, Tuning, planner};
 use crate::plot::{Caption, Picture, Plot};
 use crate::set_points::{Destination, SetPoints};
 use crate::setup::Setup;
@@ -26,6 +26,9 @@ pub(crate) fn plan(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
+    if crate::poses::concerns(&args.job)? {
+        return crate::poses::plan(args, out, err);
+    }
     let setup = Setup::new(&args.job, args.period)?;
     match setup.axes.len() {
         2 => Job::<2>::run(args, &setup, out, err),
@@ -108,6 +111,7 @@ where
                 bound: "only one of them can have standard output".to_owned(),
             });
         }
+        let method = args.method.as_deref().unwrap_or(METHODS[0].name);
         let picture = args.plot.as_deref().map(Picture::of).transpose()?;
         let source = Source::open(&args.job.program)?;
         let name = source.name.clone();
@@ -128,7 +132,7 @@ where
         };
         let outcome = Pipeline {
             moves: moves(&args.job, setup, source),
-            planner: planner(&args.method, start, limits, &tuning)?,
+            planner: planner(method, start, limits, &tuning)?,
             judge: Judge::new(start, limits),
             set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
             plot: drawing
@@ -138,7 +142,7 @@ where
         .run()?;
         let blocks = outcome.program.blocks();
         let mut summary = Summary::of(&name, setup, &outcome.report, blocks, outcome.rows);
-        summary.method = Some(args.method.clone());
+        summary.method = Some(method.to_owned());
         summary.period_s = Some(setup.period.seconds());
         summary.planning_time_s = Some(outcome.planning_time.as_secs_f64());
         summary.windows = outcome.windows.map(Into::into);
@@ -162,7 +166,7 @@ where
 }
 
 /// Begins the files of the run, none of which may be another of them.
-fn begin(
+pub(crate) fn begin(
     args: &PlanArgs,
     to_stdout: bool,
 ) -> Result<(Option<OutputFile>, Option<OutputFile>), CliError> {

@@ -12,16 +12,16 @@ use toolglide_kinematics::{Axis, AxisKind, Piece, SamplePeriod, Sampler, Vector}
 
 /// Rows nearer than this are one instant, s: the motion comes to rest there and covers less than
 /// any rounding.
-const SAME_INSTANT: f64 = 1e-9;
+pub(crate) const SAME_INSTANT: f64 = 1e-9;
 
 /// The same as a share of the period, for periods that are themselves very short.
-const SAME_INSTANT_SHARE: f64 = 1e-3;
+pub(crate) const SAME_INSTANT_SHARE: f64 = 1e-3;
 
 /// A period whose inverse is this near to a whole number gives times as multiples of a decimal.
-const WHOLE_RATE: f64 = 1e-12;
+pub(crate) const WHOLE_RATE: f64 = 1e-12;
 
 /// Rows are handed on when this many bytes have gathered.
-const CHUNK: usize = 1 << 16;
+pub(crate) const CHUNK: usize = 1 << 16;
 
 /// Where the rows go.
 pub(crate) struct Destination<'a> {
@@ -182,8 +182,9 @@ fn rows(end_time: f64, period: f64, instant: f64) -> u64 {
     1 + last + u64::from(rest > instant)
 }
 
+/// Appends a number, as short as it reads back the same.
 #[inline]
-fn number(text: &mut Vec<u8>, value: f64) {
+pub(crate) fn number(text: &mut Vec<u8>, value: f64) {
     if value == 0.0 {
         text.push(b'0');
         return;

@@ -1,6 +1,6 @@
 //! The machine of a run, with what the command line changes about it.
 //!
-//! Not here: kinematics beyond straight axes, which no program reader or planner asks for yet.
+//! Not here: what the machine does with a tool pose.
 
 use crate::args::{JobArgs, PerAxis};
 use crate::error::CliError;
@@ -56,27 +56,44 @@ pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinem
     Ok((config, machine))
 }
 
+/// Whether a machine has straight axes X Y or X Y Z alone, which planners of straight axes take.
+pub(crate) fn is_straight(config: &MachineConfig, machine: &dyn MachineKinematics) -> bool {
+    let linear = |axis: &Axis| axis.kind == AxisKind::Linear;
+    machine.axes().iter().all(linear) && matches!(config.letters().as_str(), "XY" | "XYZ")
+}
+
 impl Setup {
-    /// The machine that the command line asks for.
+    /// The machine that the command line asks for, which must have straight axes alone.
     pub(crate) fn new(job: &JobArgs, period: Option<f64>) -> Result<Self, CliError> {
         let (config, machine) = machine(&job.machine)?;
         let letters = config.letters();
-        let linear = machine
-            .axes()
-            .iter()
-            .all(|axis| axis.kind == AxisKind::Linear);
-        if !linear || !matches!(letters.as_str(), "XY" | "XYZ") {
+        if !is_straight(&config, machine.as_ref()) {
             return Err(CliError::Option {
                 option: "--machine",
                 value: format!("\"{}\" with axes {letters}", config.name),
-                bound: "programs are planned for machines of straight axes X Y or X Y Z".to_owned(),
+                bound: "this is done for machines of straight axes X Y or X Y Z".to_owned(),
             });
         }
+        Self::of(config, machine.as_ref(), job, period)
+    }
+
+    /// A machine of any axes, with what the command line changes about it.
+    pub(crate) fn of(
+        config: MachineConfig,
+        machine: &dyn MachineKinematics,
+        job: &JobArgs,
+        period: Option<f64>,
+    ) -> Result<Self, CliError> {
         let axes = limited(machine.axes(), job)?;
-        let start = match &job.start {
+        let mut start = match &job.start {
             Some(start) => one_per_axis("--start", start, axes.len())?,
             None => vec![0.0; axes.len()],
         };
+        for (axis, position) in axes.iter().zip(&mut start) {
+            if axis.kind == AxisKind::Rotary {
+                *position = position.to_radians();
+            }
+        }
         for (axis, &position) in axes.iter().zip(&start) {
             if let Some((low, high)) = axis.travel
                 && !(low..=high).contains(&position)
@@ -113,6 +130,11 @@ impl Setup {
     /// The limits of this run, for as many axes as the machine has.
     pub(crate) fn limits<const N: usize>(&self) -> Limits<N> {
         Limits::new(std::array::from_fn(|axis| self.axes[axis].limits))
+    }
+
+    /// Where each axis starts, mm and rad, in machine order.
+    pub(crate) fn start_positions(&self) -> &[f64] {
+        &self.start
     }
 
     /// Where the motion starts.
@@ -157,10 +179,12 @@ fn limited(axes: &[Axis], job: &JobArgs) -> Result<Vec<Axis>, CliError> {
     let acceleration = given("--max-acceleration", &job.max_acceleration)?;
     let jerk = given("--max-jerk", &job.max_jerk)?;
     let pick = |values: &Option<Vec<f64>>, index: usize, usual: f64| {
-        values
-            .as_ref()
-            .and_then(|values| values.get(index).copied())
-            .unwrap_or(usual)
+        let given = values.as_ref().and_then(|values| values.get(index));
+        match (given, axes[index].kind) {
+            (Some(degrees), AxisKind::Rotary) => degrees.to_radians(),
+            (Some(given), AxisKind::Linear) => *given,
+            (None, _) => usual,
+        }
     };
     axes.iter()
         .enumerate()

@@ -39,6 +39,9 @@ pub(crate) fn verify(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
+    if crate::poses::concerns(&args.job)? {
+        return crate::poses::verify(args, out, err);
+    }
     let setup = Setup::new(&args.job, None)?;
     match setup.axes.len() {
         2 => run::<2>(args, &setup, out, err),

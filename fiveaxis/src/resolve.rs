@@ -73,6 +73,10 @@ impl<'m> Resolver<'m> {
             stop: next.stops(),
             line: next.line(),
         };
+        // Where no axis is called so, X, Y and Z can only be the tool tip.
+        let has_linear = ['X', 'Y', 'Z']
+            .iter()
+            .all(|letter| self.machine.axes().iter().any(|axis| axis.name == *letter));
         let (end, axes) = match *next.end() {
             PoseEnd::Dwell { duration } => return Ok(leg(PosePath::Dwell { duration })),
             PoseEnd::Pose(pose) => {
@@ -82,8 +86,8 @@ impl<'m> Resolver<'m> {
             PoseEnd::Axes {
                 linear,
                 rotary,
-                tip: true,
-            } => {
+                tip,
+            } if tip || !has_linear => {
                 let near = self.words(index, None, rotary)?;
                 let tool = self.machine.forward(&near).map_err(machine)?.orientation();
                 let pose = ToolPose::new(linear, tool).map_err(path)?;

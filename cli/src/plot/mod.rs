@@ -3,13 +3,13 @@
 //! On the left the path, coloured by speed, and its sharpest corner; on the right feedrate,
 //! velocity, acceleration and jerk over time with their limits.
 
-mod canvas;
-mod chart;
-mod color;
+pub(crate) mod canvas;
+pub(crate) mod chart;
+pub(crate) mod color;
 mod contrast;
 mod corner;
-mod curve;
-mod envelope;
+pub(crate) mod curve;
+pub(crate) mod envelope;
 mod feeds;
 mod motion;
 mod path;

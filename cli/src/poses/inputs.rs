@@ -1,0 +1,206 @@
+//! What a run on tool poses reads: machine, start, filters, and the program as legs.
+//!
+//! Not here: options of straight axes.
+
+use crate::args::{JobArgs, TuningArgs};
+use crate::error::CliError;
+use crate::filters;
+use crate::setup::{Setup, is_straight, machine};
+use crate::source::Source;
+use std::io::BufRead;
+
+use toolglide_fir::FilterChain;
+use toolglide_fiveaxis::{FiveAxisError, Resolver};
+use toolglide_kinematics::{
+    AxisVector, MachineKinematics, OrientationTolerance, PoseEnd, PoseLeg, PoseMove,
+};
+use toolglide_program::{Language, Poses, Settings};
+
+/// The first filter is longer than the second by this factor where nobody says otherwise.
+const FIRST_TO_SECOND: f64 = 2.0;
+
+/// Whether a run is one of tool poses: the machine has other axes than straight X, Y and Z, or the
+/// program is a file of tool poses.
+pub(crate) fn concerns(job: &JobArgs) -> Result<bool, CliError> {
+    let (config, machine) = machine(&job.machine)?;
+    let language = Language::of(&job.program, b"");
+    Ok(!is_straight(&config, machine.as_ref()) || language == Language::CutterLocations)
+}
+
+/// Machine and limits of a run.
+pub(crate) struct Inputs {
+    pub(crate) setup: Setup,
+    pub(crate) machine: Box<dyn MachineKinematics>,
+    pub(crate) orientation_tolerance: OrientationTolerance,
+    /// Whether the command line says where the motion starts.
+    started: bool,
+}
+
+impl Inputs {
+    pub(crate) fn new(
+        job: &JobArgs,
+        tip_tolerance: Option<f64>,
+        orientation_tolerance: f64,
+        period: Option<f64>,
+    ) -> Result<Self, CliError> {
+        let (config, machine) = machine(&job.machine)?;
+        let mut setup = Setup::of(config, machine.as_ref(), job, period)?;
+        if let Some(length) = tip_tolerance {
+            setup.tolerance = toolglide_kinematics::Tolerance::new(length).map_err(|reason| {
+                CliError::Option {
+                    option: "--tip-tolerance",
+                    value: length.to_string(),
+                    bound: reason.to_string(),
+                }
+            })?;
+            setup.override_tolerance = true;
+        }
+        let orientation_tolerance =
+            OrientationTolerance::new(orientation_tolerance).map_err(|reason| {
+                CliError::Option {
+                    option: "--orientation-tolerance",
+                    value: orientation_tolerance.to_string(),
+                    bound: reason.to_string(),
+                }
+            })?;
+        Ok(Self {
+            setup,
+            machine,
+            orientation_tolerance,
+            started: job.start.is_some(),
+        })
+    }
+
+    /// The filters of the run.
+    pub(crate) fn chain(&self, args: &TuningArgs) -> Result<FilterChain, CliError> {
+        if let Some(chain) = filters::chain(args, &self.setup)? {
+            return Ok(chain);
+        }
+        // Time to reach the largest acceleration of the axis that takes longest.
+        let second = self
+            .setup
+            .axes
+            .iter()
+            .map(|axis| axis.limits.acceleration() / axis.limits.jerk())
+            .fold(0.0, f64::max);
+        FilterChain::with_time_constants(&[FIRST_TO_SECOND * second, second])
+            .and_then(|chain| chain.rounded_to(self.setup.period))
+            .map_err(filters::refused)
+    }
+
+    /// Opens the program; its first pose is where the motion starts, unless that is known.
+    pub(crate) fn open(&self, job: &JobArgs) -> Result<Legs<'_>, CliError> {
+        let Source { mut reader, name } = Source::open(&job.program)?;
+        let beginning = reader.fill_buf().map_err(|reason| CliError::Read {
+            file: job.program.clone(),
+            reason,
+        })?;
+        let language = Language::of(&job.program, beginning);
+        let start = AxisVector::from_slice(self.setup.start_positions())
+            .map_err(|reason| refused(&name, 0, FiveAxisError::Machine { index: 0, reason }))?;
+        let pose = self
+            .machine
+            .forward(&start)
+            .map_err(|reason| refused(&name, 0, FiveAxisError::Machine { index: 0, reason }))?;
+        let settings = Settings {
+            override_tolerance: self.setup.override_tolerance,
+            start: pose.tip(),
+            lenient: job.lenient,
+            ..Settings::new(self.setup.tolerance)
+        };
+        let boxed: Box<dyn BufRead> = Box::new(reader);
+        let mut legs = Legs {
+            program: Poses::new(boxed, &name, settings, language),
+            resolver: None,
+            machine: self.machine.as_ref(),
+            orientation_tolerance: self.orientation_tolerance,
+            name,
+            start,
+            ahead: None,
+        };
+        if !self.started {
+            legs.start_at_first_pose()?;
+        }
+        Ok(legs)
+    }
+}
+
+/// The legs of a program.
+pub(crate) struct Legs<'m> {
+    pub(crate) program: Poses<Box<dyn BufRead>>,
+    pub(crate) name: String,
+    /// Where the axes are before the first leg.
+    pub(crate) start: AxisVector,
+    resolver: Option<Resolver<'m>>,
+    machine: &'m dyn MachineKinematics,
+    orientation_tolerance: OrientationTolerance,
+    ahead: Option<PoseMove>,
+}
+
+impl Legs<'_> {
+    /// A file of tool poses does not say how the tool gets to the first.
+    fn start_at_first_pose(&mut self) -> Result<(), CliError> {
+        self.ahead = self.read()?;
+        if let Some(next) = &self.ahead
+            && let PoseEnd::Pose(pose) = next.end()
+        {
+            self.start = self.machine.inverse(pose, &self.start).map_err(|reason| {
+                refused(
+                    &self.name,
+                    next.line(),
+                    FiveAxisError::Machine { index: 0, reason },
+                )
+            })?;
+        }
+        Ok(())
+    }
+
+    fn read(&mut self) -> Result<Option<PoseMove>, CliError> {
+        self.program
+            .next()
+            .transpose()
+            .map_err(|refused| CliError::Program(Box::new(refused)))
+    }
+
+    /// The next leg; `None` at the end of the program.
+    pub(crate) fn next(&mut self) -> Result<Option<PoseLeg>, CliError> {
+        let next = match self.ahead.take() {
+            Some(next) => Some(next),
+            None => self.read()?,
+        };
+        let Some(next) = next else {
+            return Ok(None);
+        };
+        if self.resolver.is_none() {
+            let resolver = Resolver::new(self.machine, self.start, self.orientation_tolerance)
+                .map_err(|reason| refused(&self.name, next.line(), reason))?;
+            self.resolver = Some(resolver);
+        }
+        let leg = match &mut self.resolver {
+            Some(resolver) => resolver.leg(&next),
+            None => return Ok(None),
+        };
+        leg.map(Some)
+            .map_err(|reason| refused(&self.name, next.line(), reason))
+    }
+
+    /// Tells what the reader of the program wants known.
+    pub(crate) fn warn(&self, err: &mut dyn std::io::Write) {
+        for warning in self.program.warnings() {
+            let _ = writeln!(err, "{warning}");
+        }
+        if self.program.more_warnings() > 0 {
+            let _ = writeln!(err, "and {} more warnings", self.program.more_warnings());
+        }
+    }
+}
+
+/// A refused pose with its place.
+pub(crate) fn refused(program: &str, line: u32, reason: FiveAxisError) -> CliError {
+    CliError::Line {
+        program: program.to_owned(),
+        line,
+        reason: reason.to_string(),
+    }
+}
+
