@@ -22,7 +22,7 @@ pub(crate) struct Caption {
 
 impl Caption {
     /// Writes it.
-    pub(super) fn draw(&self, canvas: &mut Canvas) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas) {
         let title = "fill=\"#20262d\" font-weight=\"bold\"";
         canvas.text((64.0, 48.0), Anchor::Start, 26.0, title, &self.title);
         let subtitle = "fill=\"#4a525b\"";

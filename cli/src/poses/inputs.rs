@@ -203,4 +203,3 @@ pub(crate) fn refused(program: &str, line: u32, reason: FiveAxisError) -> CliErr
         reason: reason.to_string(),
     }
 }
-

@@ -259,12 +259,16 @@ impl PosePlot {
         );
         // The tool at the programmed poses.
         if self.legs.len() <= 200 {
-            let length = 0.05
-                * ((chart.across.1 - chart.across.0).min(chart.upward.1 - chart.upward.0));
+            let length =
+                0.05 * ((chart.across.1 - chart.across.0).min(chart.upward.1 - chart.upward.0));
             let style = format!("stroke=\"{}\" stroke-width=\"1.6\"", color::AXES[0]);
             for leg in &self.legs {
                 if let PosePath::Tool { tip, turn } = &leg.path {
-                    canvas.line(place(&tip[1]), place(&(tip[1] + turn.end() * length)), &style);
+                    canvas.line(
+                        place(&tip[1]),
+                        place(&(tip[1] + turn.end() * length)),
+                        &style,
+                    );
                 }
             }
         }

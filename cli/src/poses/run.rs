@@ -2,11 +2,11 @@
 //!
 //! Files are begun before anything is planned and named when everything is done.
 
+use super::METHODS;
 use super::inputs::{Inputs, Legs, refused};
 use super::plot::PosePlot;
 use super::rows::Rows;
 use super::summary::PoseSummary;
-use super::METHODS;
 use crate::args::PlanArgs;
 use crate::error::{CliError, DONE, OUTSIDE};
 use crate::interrupt::check_interrupt;
@@ -136,7 +136,10 @@ fn caption(summary: &PoseSummary) -> Caption {
             summary.cycle_time_s,
             summary.path_length_mm,
             summary.path_angle_deg,
-            100.0 * summary.tip_deviation_share.max(summary.tip_corner_error_share),
+            100.0
+                * summary
+                    .tip_deviation_share
+                    .max(summary.tip_corner_error_share),
             100.0
                 * summary
                     .orientation_deviation_share
@@ -264,11 +267,7 @@ impl<'a> Run<'a> {
 
     fn unreachable(&self, reason: toolglide_kinematics::KinematicsError) -> CliError {
         let index = 0;
-        refused(
-            &self.legs.name,
-            0,
-            FiveAxisError::Machine { index, reason },
-        )
+        refused(&self.legs.name, 0, FiveAxisError::Machine { index, reason })
     }
 
     fn finish(mut self, inputs: &Inputs) -> Result<Finished<'a>, CliError> {

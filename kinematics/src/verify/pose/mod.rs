@@ -8,11 +8,13 @@ mod away;
 mod axes;
 mod report;
 mod route;
+mod set_points;
 
 #[cfg(test)]
 mod tests;
 
 pub use report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
+pub use set_points::PoseSetPointJudge;
 
 use super::report::{Peak, Place};
 use crate::axis_vector::AxisVector;
