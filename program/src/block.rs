@@ -181,16 +181,31 @@ impl Block {
     ) -> Result<(), Fault> {
         let mut lexer = Lexer::new(line, values, assignments);
         while let Some(word) = lexer.word()? {
-            self.words += 1;
-            match word.letter {
-                b'G' => self.preparatory(word, settings, remarks)?,
-                b'M' => self.miscellaneous(word, settings, remarks)?,
-                _ => self.value(word, settings, remarks)?,
-            }
+            self.add(word, settings, remarks)?;
         }
         let computed = lexer.computed || !assignments.is_empty();
         self.features |= u8::from(computed) * PARAMETERS;
         Ok(())
+    }
+
+    /// Empties the block.
+    pub(crate) fn begin(&mut self) {
+        self.clear();
+    }
+
+    /// Takes one more word.
+    pub(crate) fn add(
+        &mut self,
+        word: Word,
+        settings: &Settings,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
+        self.words += 1;
+        match word.letter {
+            b'G' => self.preparatory(word, settings, remarks),
+            b'M' => self.miscellaneous(word, settings, remarks),
+            _ => self.value(word, settings, remarks),
+        }
     }
 
     /// Whether the line says nothing.

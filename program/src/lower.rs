@@ -5,6 +5,7 @@
 
 use crate::arcs::arc;
 use crate::block::Block;
+use crate::chords::count;
 use crate::codes::{FeedMode, Group, Motion, Once, PathControl, Saving, Stop};
 use crate::compensation::Compensation;
 use crate::cycles::CycleState;
@@ -17,12 +18,12 @@ use crate::parameters::Parameters;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
-use crate::splines::Nurbs;
+use crate::splines::{CHORD_SHARE, Nurbs};
 use crate::tools::ToolTable;
 use crate::units::inverse_time;
 use crate::uses::{check, motion_of, motion_span};
 use std::collections::{BTreeSet, VecDeque};
-use toolglide_kinematics::{Feedrate, Move, Vector};
+use toolglide_kinematics::{Feedrate, Move, Tolerance, Vector};
 
 /// Longest dwell, s: about eleven days, more than any process waits.
 const LONGEST_DWELL: f64 = 1e6;
@@ -226,6 +227,9 @@ impl Lowering {
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         let end = self.end(block)?;
+        if motion.is_arc() && !self.offsets.frame().is_straight() {
+            return self.turned_arc(block, motion, end, moves);
+        }
         let start = self.position;
         let there = self.offsets.on_machine(end);
         let tolerance = self.modal.tolerance;
@@ -259,6 +263,46 @@ impl Lowering {
             }
         }
         Ok(())
+    }
+
+    /// An arc in a frame that is turned, as chords: its plane is none of the machine.
+    fn turned_arc(
+        &mut self,
+        block: &Block,
+        motion: Motion,
+        end: Vector<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let span = motion_span(block);
+        // In the coordinates of the program the arc is like any other.
+        let offsets = std::mem::replace(&mut self.offsets, Offsets::new());
+        let found = arc(block, self, motion, self.program, end);
+        self.offsets = offsets;
+        let arc = match found {
+            Ok(arc) => arc,
+            Err(fault) => {
+                (self.program, self.position) = (end, self.offsets.on_machine(end));
+                return Err(fault);
+            }
+        };
+        let feedrate = self.feedrate(block, arc.length())?;
+        let (first, last) = arc.radii();
+        let chords = count(first.max(last), arc.sweep(), self.chord_error());
+        let whole = self.modal.tolerance;
+        self.modal.tolerance =
+            Tolerance::new(whole.length() * (1.0 - CHORD_SHARE)).unwrap_or(whole);
+        let mut outcome = Ok(());
+        for chord in 1..=chords {
+            let share = f64::from(chord) / f64::from(chords);
+            outcome = outcome.and_then(|()| self.go(arc.point(share), feedrate, span, moves));
+        }
+        self.modal.tolerance = whole;
+        if self.modal.path_control == PathControl::ExactStop
+            && let Some(last) = moves.back_mut()
+        {
+            *last = last.with_exact_stop();
+        }
+        outcome
     }
 
     /// Hands a move on, behind what waits.

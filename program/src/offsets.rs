@@ -4,6 +4,7 @@
 //! the rotation of its coordinate system, and moved by the origin of the system and by the tool.
 //! Not here: who sets them.
 
+use crate::frame::Frame;
 use crate::parameters::Parameters;
 use toolglide_kinematics::Vector;
 
@@ -30,6 +31,7 @@ pub(crate) struct Offsets {
     origin: Vector<3>,
     shift: Vector<3>,
     tool: Vector<3>,
+    frame: Frame,
     rotation: f64,
     sine: f64,
     cosine: f64,
@@ -43,6 +45,7 @@ impl Offsets {
             origin: Vector::zeros(),
             shift: Vector::zeros(),
             tool: Vector::zeros(),
+            frame: Frame::NONE,
             rotation: 0.0,
             sine: 0.0,
             cosine: 1.0,
@@ -55,7 +58,7 @@ impl Offsets {
         if self.none {
             return point;
         }
-        self.turned(point + self.shift, self.sine) + self.origin + self.tool
+        self.turned(self.frame.out(point) + self.shift, self.sine) + self.origin + self.tool
     }
 
     /// A point of the machine in the program.
@@ -63,7 +66,8 @@ impl Offsets {
         if self.none {
             return point;
         }
-        self.turned(point - self.tool - self.origin, -self.sine) - self.shift
+        let turned = self.turned(point - self.tool - self.origin, -self.sine);
+        self.frame.back(turned - self.shift)
     }
 
     fn turned(&self, point: Vector<3>, sine: f64) -> Vector<3> {
@@ -80,6 +84,15 @@ impl Offsets {
     /// Rotation of the coordinate system, degrees.
     pub(crate) fn rotation(&self) -> f64 {
         self.rotation
+    }
+
+    pub(crate) fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    pub(crate) fn set_frame(&mut self, frame: Frame) {
+        self.frame = frame;
+        self.look();
     }
 
     pub(crate) fn tool(&self) -> Vector<3> {
@@ -139,6 +152,7 @@ impl Offsets {
     fn look(&mut self) {
         let zero = Vector::<3>::zeros();
         self.none = self.rotation.abs() <= 0.0
+            && self.frame == Frame::NONE
             && self.origin == zero
             && self.shift == zero
             && self.tool == zero;

@@ -22,6 +22,9 @@ impl Lowering {
     /// Where the axis words of a block lead.
     pub(crate) fn end(&mut self, block: &Block) -> Result<Vector<3>, Fault> {
         if block.once == Some(Once::MachineCoordinates) {
+            if block.rotary {
+                self.turn(block)?;
+            }
             return self.end_on_machine(block);
         }
         let mut end = self.program;

@@ -48,9 +48,14 @@ impl<R: BufRead> Poses<R> {
             Language::CutterLocations => {
                 Source::Locations(Box::new(CutterLocations::new(reader, file, settings)))
             }
-            _ => Source::Axes(Box::new(AxisWords::new(Program::new(
-                reader, file, settings,
-            )))),
+            Language::Sinumerik => {
+                let program = Program::new(reader, file, settings).in_sinumerik();
+                Source::Axes(Box::new(AxisWords::new(program)))
+            }
+            Language::Ngc => {
+                let program = Program::new(reader, file, settings);
+                Source::Axes(Box::new(AxisWords::new(program)))
+            }
         };
         Self { source }
     }

@@ -13,6 +13,7 @@ use crate::lower::Lowering;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
+use crate::sinumerik::Sinumerik;
 use crate::tools::ToolTable;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -40,6 +41,7 @@ pub struct Program<R> {
     opened: bool,
     ended: bool,
     past_refusals: bool,
+    sinumerik: Option<Sinumerik>,
 }
 
 impl<R: BufRead> Program<R> {
@@ -57,6 +59,7 @@ impl<R: BufRead> Program<R> {
             opened: false,
             ended: false,
             past_refusals: false,
+            sinumerik: None,
         }
     }
 
@@ -185,6 +188,15 @@ impl<R: BufRead> Program<R> {
                 return Err(Fault::new(Span::new(at, at), reason));
             }
         }
+        if let Some(sinumerik) = &mut self.sinumerik {
+            let text = self.flow.text();
+            let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'));
+            if start.is_some_and(|start| matches!(text[start], b'/' | b'%')) {
+                return check_text(text, 0);
+            }
+            sinumerik.read(text, &mut self.block, &mut self.lowering, &mut self.remarks)?;
+            return self.carry_out();
+        }
         let text = self.flow.text();
         let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'));
         match start.map(|start| (start, text[start])) {
@@ -208,6 +220,11 @@ impl<R: BufRead> Program<R> {
             &self.lowering.settings,
             &mut self.remarks,
         )?;
+        self.carry_out()
+    }
+
+    /// Does what the block says.
+    fn carry_out(&mut self) -> Result<(), Fault> {
         if self.block.is_empty() {
             return Ok(());
         }
@@ -256,6 +273,12 @@ impl<R: BufRead> Program<R> {
 }
 
 impl<R: BufRead> Program<R> {
+    /// The same program, in the language of Sinumerik.
+    pub(crate) fn in_sinumerik(mut self) -> Self {
+        self.sinumerik = Some(Sinumerik::default());
+        self
+    }
+
     pub(crate) fn set_past_refusals(&mut self) {
         self.past_refusals = true;
     }

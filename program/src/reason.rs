@@ -88,6 +88,12 @@ pub enum Reason {
         /// The code.
         code: Code,
     },
+    /// A word that the dialect of the program does not know.
+    #[error("{word} is not supported in this dialect")]
+    UnknownWord {
+        /// The word.
+        word: Box<str>,
+    },
     /// A `G` or `M` number that cannot be a code.
     #[error("{letter} code is {value}, but must be {bound}")]
     NotACode {

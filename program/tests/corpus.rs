@@ -12,8 +12,8 @@ use common::{FILE, settings};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::PathBuf;
-use toolglide_kinematics::{Feedrate, Path, Vector};
-use toolglide_program::{Program, Settings};
+use toolglide_kinematics::{Feedrate, Path, PoseFeed, Vector};
+use toolglide_program::{Language, Poses, Program, Settings};
 
 /// Where the programs lie; they are not part of this project.
 const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/gcode/corpus");
@@ -287,5 +287,24 @@ fn other_programs_are_refused_at_their_first_word_that_is_not_read() {
             (line, column, word),
             "{file}, because of {why}: {error}"
         );
+    }
+}
+
+#[test]
+fn programs_of_rotary_axes_are_read_as_poses() {
+    let Some(corpus) = corpus() else { return };
+    for (file, moves, rapids) in [
+        ("linuxcnc/5ax_impeller-7bl-xyzac.ngc", 4492, 186),
+        // Arcs are chords.
+        ("siemens-5ax/Achskreuz.mpf", 17945, 569),
+    ] {
+        let path = corpus.join(file);
+        let reader = BufReader::new(File::open(&path).unwrap());
+        let poses = Poses::new(reader, FILE, settings(), Language::of(&path, b""));
+        let found: Vec<_> = poses
+            .collect::<Result<_, _>>()
+            .unwrap_or_else(|error| panic!("{file}: {error}"));
+        let rapid = found.iter().filter(|step| step.feed() == PoseFeed::Rapid);
+        assert_eq!((found.len(), rapid.count()), (moves, rapids), "{file}");
     }
 }

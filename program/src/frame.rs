@@ -1,0 +1,97 @@
+//! A coordinate system that a program shifts and turns as it likes.
+//!
+//! Source: programmable frames of Sinumerik: each shift and each turn is in the system that those
+//! before it made. Not here: the words that ask for them.
+
+use toolglide_kinematics::Vector;
+
+/// Where the points of a program are in the workpiece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frame {
+    /// Its axes in the workpiece, unit vectors.
+    axes: [[f64; 3]; 3],
+    shift: [f64; 3],
+}
+
+impl Frame {
+    /// The workpiece itself.
+    pub(crate) const NONE: Self = Self {
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        shift: [0.0; 3],
+    };
+
+    /// A point of the program in the workpiece.
+    pub(crate) fn out(&self, point: Vector<3>) -> Vector<3> {
+        Vector::from_fn(|row, _| {
+            let turned: f64 = (0..3).map(|axis| self.axes[axis][row] * point[axis]).sum();
+            turned + self.shift[row]
+        })
+    }
+
+    /// A point of the workpiece in the program.
+    pub(crate) fn back(&self, point: Vector<3>) -> Vector<3> {
+        let from = point - Vector::<3>::from(self.shift);
+        Vector::from_fn(|axis, _| (0..3).map(|row| self.axes[axis][row] * from[row]).sum())
+    }
+
+    /// Whether its axes are those of the workpiece.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.axes == Self::NONE.axes
+    }
+
+    /// The frame moved in its own coordinates, mm.
+    pub(crate) fn shifted(mut self, by: Vector<3>) -> Self {
+        self.shift = self.out(by).into();
+        self
+    }
+
+    /// The frame turned about one of its own axes, degrees.
+    pub(crate) fn turned(mut self, about: usize, degrees: f64) -> Self {
+        let (first, second) = ((about + 1) % 3, (about + 2) % 3);
+        // Right angles are exact, so that faces of a box stay parallel to its axes.
+        let quarters = degrees / 90.0;
+        let (sine, cosine) = if quarters.fract() == 0.0 {
+            match quarters.rem_euclid(4.0).round() {
+                0.0 => (0.0, 1.0),
+                1.0 => (1.0, 0.0),
+                2.0 => (0.0, -1.0),
+                _ => (-1.0, 0.0),
+            }
+        } else {
+            degrees.to_radians().sin_cos()
+        };
+        let (one, other) = (self.axes[first], self.axes[second]);
+        self.axes[first] = std::array::from_fn(|row| cosine * one[row] + sine * other[row]);
+        self.axes[second] = std::array::from_fn(|row| cosine * other[row] - sine * one[row]);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_add_up_in_the_turned_frame_and_points_come_back() {
+        let frame = Frame::NONE
+            .shifted(Vector::<3>::new(1.0, 2.0, 3.0))
+            .turned(0, -90.0)
+            .turned(2, 90.0)
+            .turned(1, 30.0);
+        let point = Vector::<3>::new(0.5, -4.0, 2.0);
+        assert!(
+            (frame.back(frame.out(point)) - point).norm() < 1e-12,
+            "back"
+        );
+        let quarter = Frame::NONE.turned(0, -90.0).turned(2, 90.0);
+        // X goes to the Y of the first frame, which is -Z of the workpiece.
+        let out = quarter.out(Vector::<3>::x());
+        assert!((out + Vector::<3>::z()).norm() < 1e-12, "{out}");
+    }
+
+    #[test]
+    fn a_positive_turn_about_y_takes_z_to_x() {
+        let out = Frame::NONE.turned(1, 90.0).out(Vector::<3>::z());
+        assert!((out - Vector::<3>::x()).norm() < 1e-12, "{out}");
+    }
+}

@@ -1,0 +1,359 @@
+//! A first cut of the language of Sinumerik 840D, into the blocks of RS274/NGC.
+//!
+//! Source: the programming manual of Sinumerik 840D sl, as post-processors use it: addresses with `=`,
+//! names, `DEF`, frames (`TRANS` `ATRANS` `ROT` `AROT`), `SUPA`, `TRAORI` `TRAFOOF`, `CYCLE832`. Not
+//! here: jumps, conditions, cutter compensation and cycles, which are refused by name.
+
+use crate::block::Block;
+use crate::codes::{Distance, PathControl};
+use crate::error::{Fault, Remark};
+use crate::frame::Frame;
+use crate::lexer::Word;
+use crate::lower::Lowering;
+use crate::place::Span;
+use crate::reason::Reason;
+use crate::settings::Settings;
+use crate::sinumerik_value::Reader;
+use std::collections::BTreeMap;
+use toolglide_kinematics::{Tolerance, Vector};
+
+/// Words of no effect on the path: compression, feed-forward, ways of accelerating, orientation.
+const SILENT: [&str; 34] = [
+    "BRISK", "BRISKA", "CFC", "CFIN", "CFTCP", "COMPCAD", "COMPCURV", "COMPOF", "COMPON",
+    "COMPSURF", "CUT2D", "DIAMOF", "DRIVE", "FFWOF", "FFWON", "FGROUP", "FIFOCTRL", "FNORM",
+    "G0FRAME", "KONT", "MSG", "NORM", "ORIAXES", "ORICONIO", "ORIMKS", "ORIVECT", "ORIWKS", "OSOF",
+    "SOFT", "SPATH", "STOPFIFO", "STOPRE", "UPATH", "WALIMON",
+];
+
+/// Tools whose names are remembered.
+const MOST_TOOLS: usize = 1000;
+
+/// What a program has said that blocks of RS274/NGC cannot hold.
+#[derive(Debug, Default)]
+pub(crate) struct Sinumerik {
+    /// Numbers of tools that have names, by the order in which they are met.
+    tools: BTreeMap<String, u32>,
+}
+
+/// A frame that a line sets or adds to.
+#[derive(Clone, Copy, PartialEq)]
+enum FrameWord {
+    Shift { added: bool },
+    Turn { added: bool },
+}
+
+/// A line being read.
+struct Line<'a> {
+    block: &'a mut Block,
+    state: &'a mut Lowering,
+    remarks: &'a mut Vec<Remark>,
+    frame: Option<(FrameWord, Span)>,
+    /// Words X, Y and Z of a frame.
+    offsets: [Option<f64>; 3],
+    dwell: bool,
+}
+
+impl Sinumerik {
+    /// Reads a line into a block.
+    pub(crate) fn read(
+        &mut self,
+        text: &[u8],
+        block: &mut Block,
+        state: &mut Lowering,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
+        block.begin();
+        let mut line = Line {
+            block,
+            state,
+            remarks,
+            frame: None,
+            offsets: [None; 3],
+            dwell: false,
+        };
+        let mut reader = Reader::new(text);
+        while let Some(start) = reader.next_item()? {
+            let name = reader.name();
+            match name.as_str() {
+                "" => {
+                    return Err(reader.stray(start));
+                }
+                "T" => self.tool(&mut reader, start, &mut line)?,
+                _ if name.len() == 1 && reader.address_follows() => {
+                    line.address(&mut reader, &name, start)?;
+                }
+                _ => line.word(&mut reader, &name, start)?,
+            }
+        }
+        line.set_frame()
+    }
+
+    /// A tool by number or by name.
+    fn tool(
+        &mut self,
+        reader: &mut Reader<'_>,
+        start: usize,
+        line: &mut Line<'_>,
+    ) -> Result<(), Fault> {
+        let quoted = reader.quoted_after_equals();
+        let value = match quoted {
+            Some(name) => {
+                let next = u32::try_from(self.tools.len()).unwrap_or(0) + 1;
+                if self.tools.len() < MOST_TOOLS {
+                    f64::from(*self.tools.entry(name).or_insert(next))
+                } else {
+                    f64::from(next)
+                }
+            }
+            None => reader.address_value(line.state, start)?.0,
+        };
+        line.add(b'T', value, Span::new(start, reader.at))
+    }
+}
+
+impl Line<'_> {
+    fn add(&mut self, letter: u8, value: f64, span: Span) -> Result<(), Fault> {
+        let word = Word {
+            letter,
+            value,
+            span,
+        };
+        // Codes of the machine are the business of the machine.
+        let settings = Settings {
+            lenient: self.state.settings.lenient || letter == b'M',
+            ..self.state.settings
+        };
+        self.block.add(word, &settings, self.remarks)
+    }
+
+    /// A letter with a value.
+    fn address(&mut self, reader: &mut Reader<'_>, name: &str, start: usize) -> Result<(), Fault> {
+        let letter = name.bytes().next().unwrap_or(b'?');
+        if matches!(letter, b'R' | b'S' | b'M')
+            && let Some(number) = reader.extension()
+        {
+            let value = reader.expression(self.state)?;
+            let span = Span::new(start, reader.at);
+            return if letter == b'R' {
+                self.assign(&format!("r{number}"), value, span)
+            } else {
+                self.add(letter, value, span)
+            };
+        }
+        let (value, distance) = reader.address_value(self.state, start)?;
+        let span = Span::new(start, reader.at);
+        let axis = b"XYZ".iter().position(|&axis| axis == letter);
+        match letter {
+            b'G' => self.code(value, span),
+            // Lengths of tools are in the machine.
+            b'D' | b'H' => Ok(()),
+            b'L' | b'P' | b'Q' | b'E' | b'O' | b'U' | b'V' | b'W' => Err(unknown(name, span)),
+            b'F' if self.dwell => self.add(b'P', value, span),
+            b'M' if (value - 17.0).abs() < 0.5 => self.add(b'M', 2.0, span),
+            _ => {
+                if let (Some(axis), Some(_)) = (axis, self.frame) {
+                    self.offsets[axis] = Some(value);
+                    return Ok(());
+                }
+                let value = match (distance, axis) {
+                    (Some(wanted), Some(axis)) => self.converted(value, wanted, axis),
+                    _ => value,
+                };
+                self.add(letter, value, span)
+            }
+        }
+    }
+
+    /// A coordinate of the other distance mode, as one of the mode in force.
+    fn converted(&self, value: f64, wanted: Distance, axis: usize) -> f64 {
+        let mode = self.block.distance.unwrap_or(self.state.modal.distance);
+        let units = self.block.units.unwrap_or(self.state.modal.units);
+        let here = units.written(self.state.program[axis]);
+        match (wanted, mode) {
+            (Distance::Absolute, Distance::Incremental) => value - here,
+            (Distance::Incremental, Distance::Absolute) => value + here,
+            _ => value,
+        }
+    }
+
+    /// A `G` code, by the number that RS274/NGC has for it.
+    fn code(&mut self, value: f64, span: Span) -> Result<(), Fault> {
+        let number = value.round();
+        let is = |list: &[f64]| list.iter().any(|&one| (one - number).abs() < 0.5);
+        let same = [
+            0.0, 1.0, 2.0, 3.0, 17.0, 18.0, 19.0, 40.0, 53.0, 54.0, 55.0, 56.0, 57.0, 64.0, 90.0,
+            91.0, 93.0, 94.0, 97.0,
+        ];
+        if (value - number).abs() > 1e-9 {
+            return self.add(b'G', value, span);
+        }
+        if is(&[601.0, 602.0, 603.0]) {
+            return Ok(());
+        }
+        let mapped = if is(&same) {
+            number
+        } else if is(&[4.0]) {
+            self.dwell = true;
+            4.0
+        } else if is(&[60.0, 9.0]) {
+            61.0
+        } else if is(&[641.0, 642.0, 643.0, 644.0, 645.0]) {
+            64.0
+        } else if is(&[70.0, 700.0]) {
+            20.0
+        } else if is(&[71.0, 710.0]) {
+            21.0
+        } else if is(&[153.0]) {
+            53.0
+        } else {
+            return Err(unknown(&format!("G{number}"), span));
+        };
+        self.add(b'G', mapped, span)
+    }
+
+    /// A word of several letters.
+    fn word(&mut self, reader: &mut Reader<'_>, name: &str, start: usize) -> Result<(), Fault> {
+        let span = Span::new(start, reader.at);
+        match name {
+            "DEF" => return self.define(reader),
+            "SUPA" => return self.add(b'G', 53.0, span),
+            "TRAORI" => self.state.tip = true,
+            "TRAFOOF" => self.state.tip = false,
+            "TRANS" | "ATRANS" => {
+                let added = name == "ATRANS";
+                self.frame = Some((FrameWord::Shift { added }, span));
+            }
+            "ROT" | "AROT" => {
+                let added = name == "AROT";
+                self.frame = Some((FrameWord::Turn { added }, span));
+            }
+            "CR" | "TURN" if reader.equals_follows() => {
+                let value = reader.expression(self.state)?;
+                let span = Span::new(start, reader.at);
+                return match name {
+                    "CR" => self.add(b'R', value, span),
+                    _ => self.add(b'P', value + 1.0, span),
+                };
+            }
+            "CYCLE832" => {
+                let arguments = reader.arguments(self.state)?;
+                return self.smooth(arguments.first().copied(), span);
+            }
+            "CYCLE800" => {
+                if !reader.arguments(self.state)?.is_empty() {
+                    return Err(unknown("CYCLE800 with arguments", span));
+                }
+                return Ok(());
+            }
+            _ if SILENT.contains(&name) => {}
+            _ if reader.equals_follows() => {
+                let value = reader.expression(self.state)?;
+                let lower = name.to_ascii_lowercase();
+                if self.state.parameters.get_named(&lower).is_none() {
+                    return Err(unknown(name, span));
+                }
+                return self.assign(&lower, value, Span::new(start, reader.at));
+            }
+            _ => return Err(unknown(name, span)),
+        }
+        reader.skip_brackets();
+        Ok(())
+    }
+
+    /// `DEF REAL a, b = 2`.
+    fn define(&mut self, reader: &mut Reader<'_>) -> Result<(), Fault> {
+        let kind = reader.next_name();
+        if !matches!(kind.as_str(), "REAL" | "INT" | "BOOL") {
+            return Err(reader.stray(reader.at));
+        }
+        loop {
+            let start = reader.at;
+            let name = reader.next_name().to_ascii_lowercase();
+            if name.is_empty() {
+                return Err(reader.stray(start));
+            }
+            let value = if reader.equals_follows() {
+                reader.expression(self.state)?
+            } else {
+                0.0
+            };
+            self.assign(&name, value, Span::new(start, reader.at))?;
+            if !reader.comma_follows() {
+                return Ok(());
+            }
+        }
+    }
+
+    fn assign(&mut self, name: &str, value: f64, span: Span) -> Result<(), Fault> {
+        self.block.features |= crate::block::PARAMETERS;
+        self.state
+            .parameters
+            .set_named(name, value)
+            .map_err(|reason| Fault::new(span, reason.into()))
+    }
+
+    /// `CYCLE832`: the tolerance within which corners are rounded.
+    fn smooth(&mut self, tolerance: Option<f64>, span: Span) -> Result<(), Fault> {
+        let state = &mut *self.state;
+        state.modal.path_control = PathControl::Blend;
+        state.modal.tolerance = state.settings.tolerance;
+        let Some(value) = tolerance.filter(|&value| value != 0.0) else {
+            return Ok(());
+        };
+        if !state.settings.override_tolerance {
+            let quantity = "tolerance";
+            let length = state.modal.units.length(value);
+            state.modal.tolerance = Tolerance::new(length)
+                .map_err(|_| Fault::new(span, Reason::NotPositive { quantity, value }))?;
+        }
+        Ok(())
+    }
+
+    /// Sets the frame that the line speaks of.
+    fn set_frame(&mut self) -> Result<(), Fault> {
+        let Some((word, span)) = self.frame else {
+            return Ok(());
+        };
+        let state = &mut *self.state;
+        let units = state.modal.units;
+        let mut frame = state.offsets.frame();
+        match word {
+            FrameWord::Shift { added } => {
+                if !added {
+                    frame = Frame::NONE;
+                }
+                let shift =
+                    Vector::<3>::from_fn(|axis, _| units.length(self.offsets[axis].unwrap_or(0.0)));
+                if shift.amax() > crate::units::FARTHEST {
+                    let (value, bound) = (shift.amax(), crate::units::FARTHEST);
+                    let reason = Reason::TooFar {
+                        letter: 'X',
+                        value,
+                        bound,
+                    };
+                    return Err(Fault::new(span, reason));
+                }
+                frame = frame.shifted(shift);
+            }
+            FrameWord::Turn { added } => {
+                if !added {
+                    frame = Frame::NONE;
+                }
+                // About Z, then the new Y, then the new X.
+                for axis in [2, 1, 0] {
+                    if let Some(degrees) = self.offsets[axis] {
+                        frame = frame.turned(axis, degrees);
+                    }
+                }
+            }
+        }
+        state.offsets.set_frame(frame);
+        state.program = state.offsets.in_program(state.position);
+        Ok(())
+    }
+}
+
+fn unknown(word: &str, span: Span) -> Fault {
+    let word = word.into();
+    Fault::new(span, Reason::UnknownWord { word })
+}
