@@ -61,8 +61,14 @@ impl Mode {
     #[must_use]
     pub fn residual(&self, chain: &FilterChain) -> f64 {
         let natural = TAU * self.frequency;
-        let pole = Complex::new(-self.damping * natural, natural * self.damped_share());
+        let pole = self.pole();
         (-self.damping * natural * chain.total_delay()).exp() * chain.transfer(pole).norm()
+    }
+
+    /// Pole of the oscillator in the upper half-plane, 1/s.
+    pub(crate) fn pole(&self) -> Complex<f64> {
+        let natural = TAU * self.frequency;
+        Complex::new(-self.damping * natural, natural * self.damped_share())
     }
 
     fn damped_share(&self) -> f64 {
