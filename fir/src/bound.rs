@@ -55,6 +55,18 @@ impl Schedule {
         (self.first..).zip(self.contributions.iter().copied())
     }
 
+    /// Share of the last bound that real corners have, as opposed to chords of an arc.
+    pub(crate) fn share_of_corners<const N: usize>(&self, pulses: &[Pulse<N>]) -> f64 {
+        let (mut corners, mut all) = (0.0, 0.0);
+        for (corner, contribution) in self.contributions() {
+            all += contribution;
+            if !pulses[corner].smooth {
+                corners += contribution;
+            }
+        }
+        if all > 0.0 { corners / all } else { 0.0 }
+    }
+
     /// Times the pulses; those before `fixed` keep the gaps that were handed out.
     ///
     /// Two pulses whose velocities differ on an axis by more than `change` must not be in the window

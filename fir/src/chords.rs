@@ -44,6 +44,11 @@ impl<const N: usize> Chords<N> {
         self.arc.sweep().abs() / self.count
     }
 
+    /// How far the vertices lie outside the arc.
+    pub(crate) fn outward(&self) -> f64 {
+        self.outward
+    }
+
     /// Length of the longest chord.
     pub(crate) fn longest(&self) -> f64 {
         (self.vertex(2.0_f64.min(self.count)) - self.vertex(1.0))

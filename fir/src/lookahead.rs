@@ -367,7 +367,13 @@ impl<const N: usize> LookAhead<N> {
                 }
                 self.dirty[corner] = false;
                 let allowed = self.allowed(corner);
-                let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
+                let mut bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
+                let bulge = self.pulses[corner].bulge;
+                if bulge > 0.0 {
+                    // The turns of the arc lead inside, where the vertex does not count against them.
+                    let share = self.schedule.share_of_corners(&self.pulses);
+                    bound += bulge * (2.0 * share).min(1.0);
+                }
                 if bound > allowed * (1.0 + LIMIT_SLACK) {
                     broken = true;
                     self.dirty[corner] = true;

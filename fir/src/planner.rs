@@ -24,9 +24,9 @@ const LINE_SHARE: f64 = 0.9999;
 /// The same for arcs, whose chords leave a ripple behind the filters.
 const ARC_SHARE: f64 = 0.998;
 
-/// Tolerances above this share of the radius are planned with the bound alone, which is a little
-/// slower: there the exact root for a steady circle says too little about how it is left.
-const WIDE: f64 = 0.02;
+/// By how much the bound may exceed the tolerance in the middle of an arc, where it is larger than the
+/// distance itself; what is beyond the tolerance is what [`ARC_SHARE`] leaves.
+const STEADY_EXCESS: f64 = 1.0015;
 
 /// Feedrates within this factor share their time constants.
 const SAME_CLASS: f64 = 2.0;
@@ -177,8 +177,7 @@ impl<const N: usize> FirInterpolation<N> {
         self.choose(feedrate);
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
-        let (radius, limit) = self.arc_limit(arc, feedrate, tolerance);
-        let mut limit = limit;
+        let mut limit = self.arc_limit(arc, feedrate, tolerance);
         let mut from = self.anchor;
         for vertex in chords.vertices() {
             let span = vertex - from;
@@ -188,11 +187,9 @@ impl<const N: usize> FirInterpolation<N> {
             }
             from = vertex;
         }
-        let steady = if tolerance < WIDE * radius {
-            self.steady_bound(&chords, limit)
-        } else {
-            0.0
-        };
+        let steady = self
+            .steady_bound(&chords, limit)
+            .min(STEADY_EXCESS * tolerance);
         self.arc = Some(ArcUnderWay {
             chords,
             limit,
@@ -203,20 +200,20 @@ impl<const N: usize> FirInterpolation<N> {
         });
     }
 
-    /// Radius of an arc, and the feedrate that its tolerance and its centripetal acceleration leave.
-    fn arc_limit(&self, arc: &Arc<N>, feedrate: f64, tolerance: f64) -> (f64, f64) {
+    /// The feedrate that the tolerance of an arc and its centripetal acceleration leave.
+    fn arc_limit(&self, arc: &Arc<N>, feedrate: f64, tolerance: f64) -> f64 {
         let (start_radius, end_radius) = arc.radii();
         let radius = start_radius.max(end_radius);
         // Of the way, the part that turns.
         let turning = radius * arc.sweep().abs() / arc.length();
         let chain = &self.chain;
         let slow = (2.0 * tolerance / (radius * chain.variance())).sqrt();
-        let mut angular = if tolerance < WIDE * radius {
+        let mut angular = slow * STEADY_EXCESS.sqrt();
+        if tolerance < radius {
             let notch = std::f64::consts::TAU / chain.long();
-            angular_velocity(|w| chain.gain(w), tolerance / radius, slow, notch)
-        } else {
-            slow
-        };
+            let share = tolerance / radius;
+            angular = angular.min(angular_velocity(|w| chain.gain(w), share, slow, notch));
+        }
         // The change of velocity within the longest time constant is at most what an axis may have.
         let (radial, lateral) = arc.frame();
         for axis in 0..N {
@@ -226,7 +223,7 @@ impl<const N: usize> FirInterpolation<N> {
                 angular = angular.min((acceleration / (radius * share)).sqrt());
             }
         }
-        (radius, feedrate.min(angular * radius / turning))
+        feedrate.min(angular * radius / turning)
     }
 
     /// What the bound comes to in the middle of an arc.
@@ -251,6 +248,11 @@ impl<const N: usize> FirInterpolation<N> {
         };
         match under_way.chords.next() {
             Some((vertex, more)) => {
+                let bulge = if more {
+                    under_way.chords.outward()
+                } else {
+                    0.0
+                };
                 let ArcUnderWay {
                     limit,
                     tolerance,
@@ -265,6 +267,7 @@ impl<const N: usize> FirInterpolation<N> {
                 let mut pulse = Pulse::between((self.anchor, vertex), limit, tolerance, serves);
                 pulse.smooth = more;
                 pulse.steady = steady;
+                pulse.bulge = bulge;
                 self.add(pulse);
             }
             None => {

@@ -20,6 +20,8 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) smooth: bool,
     /// What the bound comes to in the middle of an arc; a longer bound is allowed nowhere else.
     pub(crate) steady: f64,
+    /// How far its end lies outside the arc that it is part of.
+    pub(crate) bulge: f64,
     pub(crate) serves: Serves,
     /// Feedrate that is commanded.
     pub(crate) feed: f64,
@@ -54,6 +56,7 @@ impl<const N: usize> Pulse<N> {
             tolerance,
             smooth: false,
             steady: 0.0,
+            bulge: 0.0,
             serves,
             feed: limit,
             gap: 0.0,
