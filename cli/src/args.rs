@@ -7,6 +7,7 @@ use crate::planner::METHODS;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use toolglide_machines::ModeConfig;
 use toolglide_optimal::Effort;
 
 /// Plans smooth motion for machine tools and judges it.
@@ -33,6 +34,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Plan the examples of the dissertation and compare with what it prints.
     Reproduce(ReproduceArgs),
+    /// Show what the motion of several methods does to the modes of vibration of the machine.
+    Spectrum(SpectrumArgs),
     /// List the machines there are, or describe one.
     Machines(MachinesArgs),
     /// Print completions for a shell.
@@ -200,6 +203,27 @@ pub(crate) struct CheckArgs {
     pub(crate) json: bool,
 }
 
+/// Whose spectra to show.
+#[derive(Debug, Args)]
+pub(crate) struct SpectrumArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods(), default_value = "fir,kcs")]
+    pub(crate) methods: Vec<String>,
+    /// What some methods can be told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// A mode of vibration, as in X,7.4 or X,7.4,0.01: axis, frequency in Hz, damping ratio; instead
+    /// of those of the machine file. May be given several times.
+    #[arg(long = "mode", value_name = "AXIS,HZ[,DAMPING]", value_parser = mode)]
+    pub(crate) modes: Vec<ModeConfig>,
+    /// Draw the spectra; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
 /// What to reproduce.
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
@@ -281,6 +305,26 @@ fn per_axis(text: &str) -> Result<PerAxis, String> {
         .map(positive)
         .collect::<Result<_, _>>()
         .map(PerAxis)
+}
+
+fn mode(text: &str) -> Result<ModeConfig, String> {
+    let mut parts = text.split(',').map(str::trim);
+    let mut letters = parts.next().unwrap_or_default().chars();
+    let (Some(axis), None) = (letters.next(), letters.next()) else {
+        return Err(format!(
+            "\"{text}\" does not begin with the letter of an axis"
+        ));
+    };
+    let frequency_hz = positive(parts.next().unwrap_or_default())?;
+    let damping = parts.next().map_or(Ok(0.0), number)?;
+    if let Some(more) = parts.next() {
+        return Err(format!("\"{more}\" is one number too many"));
+    }
+    Ok(ModeConfig {
+        axis: axis.to_ascii_uppercase(),
+        frequency_hz,
+        damping,
+    })
 }
 
 fn coordinates(text: &str) -> Result<PerAxis, String> {

@@ -25,6 +25,7 @@ mod score;
 mod set_points;
 mod setup;
 mod source;
+mod spectrum;
 mod standing;
 mod summary;
 mod survey;
@@ -77,6 +78,7 @@ where
         Command::Compare(args) => compare::compare(&args, out, err),
         Command::Score(args) => score::score(&args, out, err),
         Command::Check(args) => check::check(&args, out, err),
+        Command::Spectrum(args) => spectrum::spectrum(&args, out, err),
         Command::Reproduce(args) => reproduce::reproduce(&args, out, err),
         Command::Machines(args) => machines::machines(&args, out).map(|()| DONE),
         Command::Completions { shell } => {

@@ -16,6 +16,7 @@ mod path;
 mod picture;
 mod render;
 mod sheet;
+mod spectra;
 mod trace;
 mod zoom;
 
@@ -29,6 +30,7 @@ pub(crate) use contrast::Contrast;
 pub(crate) use feeds::Feeds;
 pub(crate) use picture::Picture;
 pub(crate) use sheet::Caption;
+pub(crate) use spectra::{Spectra, Spectrum};
 
 /// Points at which the speed along a piece is drawn.
 const POINTS_PER_PIECE: u32 = 8;
