@@ -31,7 +31,7 @@ pub use bound::lower_bound;
 pub use certify::{Certificate, certify};
 pub use course::{Class, Course};
 pub use error::ReferenceError;
-pub use optimum::{Optimum, Settings, optimum};
+pub use optimum::{Optimum, Settings, optimum, solved_once};
 pub use planner::{LONGEST, ReferencePlanner, plan};
 pub use score::{Held, Score, corner_penalty_ratio, hold, part, score};
 pub use sections::{Section, Sections, sections};

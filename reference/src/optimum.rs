@@ -154,6 +154,23 @@ pub fn optimum<const N: usize>(
     Ok(optimum)
 }
 
+/// The duration of the best motion on samples at given durations of the legs up to a common factor, s:
+/// one convex program, without a search.
+///
+/// # Errors
+/// As [`optimum`].
+pub fn solved_once<const N: usize>(
+    course: &Course<N>,
+    times: &[f64],
+    settings: &Settings,
+) -> Result<f64, ReferenceError> {
+    check(course, times)?;
+    let grid = Grid::new(times, &settings.counts(times));
+    least_time(course, &grid, Kind::Sampled, None, 0.0)
+        .map(|least| least.duration)
+        .ok_or_else(|| not_solved(course, &grid))
+}
+
 /// The motion exactly along a course of one leg.
 fn straight<const N: usize>(course: &Course<N>) -> Option<Plan<N>> {
     let [leg] = course.legs.as_slice() else {

@@ -151,7 +151,8 @@ impl<const N: usize> Tube<'_, '_, N> {
         }
     }
 
-    /// Jerk across an exact line is zero; with the state at its start this keeps all of it.
+    /// Jerk across an exact line is zero, and so are its moments; with the state at its start this keeps
+    /// all of it.
     fn straight_jerk(&mut self, interval: usize, leg: usize) {
         let Stated {
             rows,
@@ -163,6 +164,16 @@ impl<const N: usize> Tube<'_, '_, N> {
             let share = |axis: usize| across[axis] * scales.jerk[axis] / most;
             let terms = (0..N).map(|axis| (columns.jerk(interval, axis), share(axis)));
             rows.zero(terms, 0.0);
+            for order in 0..2 {
+                let moment = |axis| {
+                    let moments = columns.moments(interval, axis)?;
+                    Some((moments[order], share(axis)))
+                };
+                let terms: Vec<_> = (0..N).filter_map(moment).collect();
+                if !terms.is_empty() {
+                    rows.zero(terms, 0.0);
+                }
+            }
         }
     }
 
