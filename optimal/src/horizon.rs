@@ -22,6 +22,9 @@ const WINDOW: f64 = 4.5;
 /// What is handed out of a window, in times to stop.
 const COMMIT: f64 = 3.3;
 
+/// Longest window up to a stop of the path, in times to stop: what is left is planned at once.
+const LAST_WINDOW: f64 = 7.0;
+
 /// Fewest spans of a window, where there are as many.
 const FEWEST_SPANS: usize = 4;
 
@@ -148,7 +151,10 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.free
             .fill(self.spans.iter(), speed, !closing, self.weakest);
         let (reach, enough) = self.reach(WINDOW, FEWEST_SPANS);
-        let window = reach.max((self.planned + 1).min(known));
+        let mut window = reach.max((self.planned + 1).min(known));
+        if closing && self.fits_at_once(known) {
+            window = known;
+        }
         if closing && window == known && self.planned == known {
             self.commit(known);
             return true;
@@ -202,6 +208,11 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
         let enough = time >= stops * stop_time && self.spans.len() >= fewest;
         (self.spans.len(), enough)
+    }
+
+    /// Whether all that is left makes one window that is not much longer than usual.
+    fn fits_at_once(&mut self, known: usize) -> bool {
+        self.reach(LAST_WINDOW, FEWEST_SPANS).0 == known
     }
 
     /// Finds a plan for the first `count` spans that is accepted and no worse than the one there is;
