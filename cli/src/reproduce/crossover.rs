@@ -5,6 +5,7 @@
 
 use super::run::Runs;
 use crate::error::CliError;
+use crate::planner::Tuning;
 
 /// Acceleration and jerk of both axes, mm/s² and mm/s³.
 const LIMITS: (f64, f64) = (2_500.0, 2e5);
@@ -37,7 +38,7 @@ fn gain(turn: f64, tolerance: f64, runs: &mut Runs) -> Result<f64, CliError> {
     let text = format!("G64 P{tolerance}\nG1 X10 F6000\nG1 X{x:.9} Y{y:.9}\n");
     let name = format!("a turn of {turn:.2} degrees");
     let mut time = |method| {
-        runs.plan(&text, &name, LIMITS, method)
+        runs.plan((&text, &name), LIMITS, method, &Tuning::default())
             .map(|outcome| outcome.cycle_time)
     };
     Ok(time("kcs-interrupted")? - time("kcs-uninterrupted")?)

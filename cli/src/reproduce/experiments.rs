@@ -14,6 +14,8 @@ pub(super) struct Course {
     pub(super) acceleration: f64,
     /// mm/s³
     pub(super) jerk: f64,
+    /// Time constants of filters, s; none for methods without.
+    pub(super) filters: &'static [f64],
 }
 
 /// A figure or table.
@@ -36,11 +38,15 @@ pub(super) struct Entry {
 
 macro_rules! course {
     ($file:literal, $acceleration:literal, $jerk:literal) => {
+        course!($file, $acceleration, $jerk, &[])
+    };
+    ($file:literal, $acceleration:literal, $jerk:literal, $filters:expr) => {
         Course {
             name: $file,
             text: include_str!(concat!("../../../examples/dissertation/", $file)),
             acceleration: $acceleration,
             jerk: $jerk,
+            filters: $filters,
         }
     };
 }
@@ -55,6 +61,11 @@ static TWO_80: Course = course!("two_corners_80um.ngc", 3_000.0, 1e5);
 static SPIRAL: Course = course!("spiral.ngc", 2_000.0, 5e4);
 static HEART: Course = course!("heart.ngc", 2_000.0, 5e4);
 
+static ARC: Course = course!("arc_after_lines.ngc", 10_000.0, 1e6, &[0.05, 0.03]);
+static CLOVER: Course = course!("clover.ngc", 20_000.0, 2e6, &[0.03, 0.025]);
+static STARFISH: Course = course!("starfish.ngc", 2_500.0, 2e5, &[0.1351, 0.1087]);
+static STARFISH_PRINTED: Course = course!("starfish.ngc", 2_500.0, 2e5, &[0.1361, 0.1109]);
+
 const INTERRUPTED: &str = "kcs-interrupted";
 const UNINTERRUPTED: &str = "kcs-uninterrupted";
 const LOCAL: &str = "kcs-local";
@@ -62,6 +73,8 @@ const GLOBAL: &str = "kcs-global";
 const BEZIER: &str = "bezier";
 const STOP: &str = "exact-stop";
 const KCS: &str = "kcs";
+const FIR: &str = "fir";
+const FIR_STOP: &str = "fir-p2p";
 
 const SPEEDS: &str = "print rounds phases up to 0.1 ms and truncates the speed (inferred)";
 const MADE: &str = "geometry not printed, so ours differs";
@@ -123,6 +136,19 @@ const fn entry(quantity: Quantity, printed: &'static str, note: &'static str) ->
         printed,
         note,
     }
+}
+
+const fn gain(course: &'static Course, frequency: f64, note: &'static str) -> Entry {
+    entry(Quantity::Gain(course, frequency), "", note)
+}
+
+const fn deviation(
+    course: &'static Course,
+    method: &'static str,
+    printed: &'static str,
+    note: &'static str,
+) -> Entry {
+    entry(Quantity::Deviation(planned(course, method)), printed, note)
 }
 
 const fn crossover(tolerance: f64, note: &'static str) -> Entry {
@@ -249,6 +275,55 @@ pub(super) static EXPERIMENTS: &[Experiment] = &[
         entries: &[
             ratio(&HEART, GLOBAL, ".551", MADE),
             ratio(&HEART, KCS, "", NOT_PRINTED),
+        ],
+    },
+    Experiment {
+        name: "fig-4.13",
+        title: "two lines and a half circle; the directions are our construction",
+        entries: &[
+            entry(
+                Quantity::CircleFeed(&ARC, 10.0, 0.1),
+                "84.2",
+                "radius of 10 mm inferred",
+            ),
+            time(&ARC, FIR_STOP, "1.137", ""),
+            time(
+                &ARC,
+                FIR,
+                "1.074",
+                "arcs are planned with 99.8 % of the tolerance",
+            ),
+            deviation(&ARC, FIR, "<100", ""),
+        ],
+    },
+    Experiment {
+        name: "clover",
+        title: "five arcs and five lines of section 4.5.1; geometry and filters are our construction",
+        entries: &[
+            deviation(&CLOVER, FIR, "<100", ""),
+            time(&CLOVER, FIR, "", NOT_PRINTED),
+            time(&CLOVER, FIR_STOP, "", NOT_PRINTED),
+        ],
+    },
+    Experiment {
+        name: "starfish",
+        title: "modes of 7.4 and 9.2 Hz under 125 moves of section 4.5.2; geometry is our construction",
+        entries: &[
+            gain(
+                &STARFISH_PRINTED,
+                7.4,
+                "printed time constants: 136.1 and 110.9 ms",
+            ),
+            gain(&STARFISH_PRINTED, 9.2, "printed time constants"),
+            gain(
+                &STARFISH,
+                7.4,
+                "the periods of the modes: 135.1 and 108.7 ms",
+            ),
+            gain(&STARFISH, 9.2, "the periods of the modes"),
+            deviation(&STARFISH, FIR, "<30", ""),
+            time(&STARFISH, FIR, "", NOT_PRINTED),
+            time(&STARFISH, FIR_STOP, "", NOT_PRINTED),
         ],
     },
 ];

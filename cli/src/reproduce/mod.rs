@@ -1,6 +1,6 @@
 //! The numbers that the dissertation prints, beside ours, planned now.
 //!
-//! Source: chapters 2 and 3 of Tajima, Smooth Trajectory Generation for Machine Tools and Industrial
+//! Source: chapters 2 to 4 of Tajima, Smooth Trajectory Generation for Machine Tools and Industrial
 //! Robots (Oregon State University, 2019). Not here: the programs, which are part of the examples.
 
 mod crossover;

@@ -18,6 +18,12 @@ pub(super) enum Quantity {
     /// The turn above which a corner is faster with uninterrupted acceleration, within this
     /// tolerance, mm.
     Crossover(f64),
+    /// Largest feedrate on a circle of this radius within this tolerance, mm, behind the filters.
+    CircleFeed(&'static Course, f64, f64),
+    /// Gain of the filters at a frequency, Hz.
+    Gain(&'static Course, f64),
+    /// Largest distance from the path.
+    Deviation(Planned),
 }
 
 /// A program planned by a method.
@@ -33,8 +39,10 @@ impl Quantity {
         match self {
             Self::CycleTime(planned)
             | Self::CornerSpeed(planned)
+            | Self::Deviation(planned)
             | Self::Ratio(planned, _)
             | Self::PerCorner(planned, _, _) => Some(planned.course.name),
+            Self::CircleFeed(course, ..) | Self::Gain(course, _) => Some(course.name),
             Self::Crossover(_) => None,
         }
     }
@@ -48,6 +56,9 @@ impl Quantity {
             Self::PerCorner(planned, other, _) => {
                 format!("per corner, {} - {other}", planned.method)
             }
+            Self::CircleFeed(_, radius, _) => format!("largest feedrate, radius of {radius} mm"),
+            Self::Gain(_, frequency) => format!("gain of the filters at {frequency} Hz"),
+            Self::Deviation(planned) => format!("deviation, {}", planned.method),
             Self::Crossover(tolerance) => format!("crossover turn at {:.0} µm", 1e3 * tolerance),
         }
     }
@@ -56,8 +67,9 @@ impl Quantity {
     pub(super) fn unit(&self) -> &'static str {
         match self {
             Self::CycleTime(_) => "s",
-            Self::CornerSpeed(_) => "mm/s",
-            Self::Ratio(..) => "",
+            Self::CornerSpeed(_) | Self::CircleFeed(..) => "mm/s",
+            Self::Ratio(..) | Self::Gain(..) => "",
+            Self::Deviation(_) => "µm",
             Self::PerCorner(..) => "ms",
             Self::Crossover(_) => "deg",
         }
@@ -66,8 +78,11 @@ impl Quantity {
     /// Decimals with which it is shown: one or two more than are printed.
     pub(super) fn decimals(&self) -> usize {
         match self {
-            Self::CycleTime(_) => 5,
-            Self::CornerSpeed(_) | Self::PerCorner(..) => 2,
+            Self::CycleTime(_) | Self::Gain(..) => 5,
+            Self::CornerSpeed(_)
+            | Self::PerCorner(..)
+            | Self::CircleFeed(..)
+            | Self::Deviation(_) => 2,
             Self::Ratio(..) => 4,
             Self::Crossover(_) => 1,
         }

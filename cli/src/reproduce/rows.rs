@@ -5,8 +5,10 @@ use super::experiments::{Entry, Experiment};
 use super::quantity::Quantity;
 use super::run::Runs;
 use crate::error::CliError;
+use crate::filters::refused;
 use serde::Serialize;
 use std::fmt::Write;
+use toolglide_fir::largest_circle_feed;
 
 /// One printed number and ours, as JSON names it.
 #[derive(Clone, Debug, Serialize)]
@@ -62,7 +64,24 @@ fn value(quantity: &Quantity, runs: &mut Runs) -> Result<f64, CliError> {
             1e3 * more / f64::from(corners)
         }
         Quantity::Crossover(tolerance) => crossover(tolerance, runs)?,
+        Quantity::CircleFeed(course, radius, tolerance) => {
+            let chain = course.chain()?.ok_or_else(|| none(course.name))?;
+            largest_circle_feed(&chain, radius, tolerance).map_err(refused)?
+        }
+        Quantity::Gain(course, frequency) => {
+            let chain = course.chain()?.ok_or_else(|| none(course.name))?;
+            chain.gain(std::f64::consts::TAU * frequency).abs()
+        }
+        Quantity::Deviation(planned) => 1e3 * runs.of(planned.course, planned.method)?.deviation,
     })
+}
+
+fn none(program: &str) -> CliError {
+    CliError::Line {
+        program: program.to_owned(),
+        line: 0,
+        reason: "there are no filters".to_owned(),
+    }
 }
 
 /// Widths of the columns quantity, printed, ours and difference.

@@ -2,10 +2,12 @@
 
 use super::experiments::Course;
 use crate::error::CliError;
+use crate::filters::refused;
 use crate::pipeline::{Lane, Moves};
 use crate::planner::{Tuning, planner};
 use crate::summary::worst_first;
 use crate::travel::Travel;
+use toolglide_fir::FilterChain;
 use toolglide_kinematics::verify::Judge;
 use toolglide_kinematics::{Limits, Tolerance, Vector};
 use toolglide_program::{Program, Settings};
@@ -23,12 +25,26 @@ pub(super) struct Outcome {
     pub(super) cycle_time: f64,
     /// Speed at the beginning of the first corner, mm/s; 0 where every corner is a stop.
     pub(super) corner_speed: f64,
+    /// Largest distance from the path, mm.
+    pub(super) deviation: f64,
+}
+
+impl Course {
+    /// Its filters, where there are any.
+    pub(super) fn chain(&self) -> Result<Option<FilterChain>, CliError> {
+        if self.filters.is_empty() {
+            return Ok(None);
+        }
+        FilterChain::with_time_constants(self.filters)
+            .map(Some)
+            .map_err(refused)
+    }
 }
 
 /// The plans made so far, and what was wrong with them.
 #[derive(Debug, Default)]
 pub(super) struct Runs {
-    done: Vec<(&'static str, &'static str, Outcome)>,
+    done: Vec<(&'static Course, &'static str, Outcome)>,
     complaints: Vec<String>,
 }
 
@@ -42,23 +58,27 @@ impl Runs {
         let found = self
             .done
             .iter()
-            .find(|run| run.0 == course.name && run.1 == method);
+            .find(|run| std::ptr::eq(run.0, course) && run.1 == method);
         if let Some(&(_, _, outcome)) = found {
             return Ok(outcome);
         }
         let limits = (course.acceleration, course.jerk);
-        let outcome = self.plan(course.text, course.name, limits, method)?;
-        self.done.push((course.name, method, outcome));
+        let tuning = Tuning {
+            filters: course.chain()?,
+            ..Tuning::default()
+        };
+        let outcome = self.plan((course.text, course.name), limits, method, &tuning)?;
+        self.done.push((course, method, outcome));
         Ok(outcome)
     }
 
     /// A text planned by a method within an acceleration and a jerk of both axes.
     pub(super) fn plan(
         &mut self,
-        text: &str,
-        name: &str,
+        (text, name): (&str, &str),
         (acceleration, jerk): (f64, f64),
         method: &str,
+        tuning: &Tuning,
     ) -> Result<Outcome, CliError> {
         let refuse = |reason: String| CliError::Line {
             program: name.to_owned(),
@@ -77,7 +97,7 @@ impl Runs {
         };
         let start = Vector::<2>::zeros();
         let mut lane = Lane::new(
-            planner(method, start, limits, &Tuning::default())?,
+            planner(method, start, limits, tuning)?,
             Judge::new(start, limits),
         );
         let mut batch = Vec::new();
@@ -104,6 +124,7 @@ impl Runs {
         Ok(Outcome {
             cycle_time: report.cycle_time,
             corner_speed: corner_speed.unwrap_or(0.0),
+            deviation: report.deviation.value,
         })
     }
 
