@@ -260,3 +260,18 @@ fn a_long_slow_move_after_a_corner_is_made() {
     let course = Course::of_lines([0.0, 0.0], &ends, 0.9446650879274856, 0.001545972718267239);
     holds(&course, &[[500.0, 8954.27477615019, 173840.1440194517]; 2]);
 }
+
+/// Where a curve turns away from an axis, a speed that the direction allows is too fast for the axis.
+#[test]
+#[rustfmt::skip]
+fn superposed_corners_keep_the_velocity_of_each_axis() {
+    let course = Course { start: [0.0, 0.0, 0.0], legs: vec![
+    go(Lead::Line([1.0, 0.0, 0.0]), INF, 0.003898788655297965),
+    go(arc([0.703463544458343, 0.0, 0.0], [1.0, 0.0, -3.8872322944918434], [0, 1], false, 0), INF, 0.003898788655297965),
+] };
+    holds(&course, &[
+        [10.000000000000002, 100.00000000000004, 17931.329290825055],
+        [10.000000000000002, 820.2968109066844, 16306.7215664497],
+        [12.02439918111321, 552.4541165075073, 7310.38584099008],
+    ]);
+}

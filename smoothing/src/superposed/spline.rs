@@ -231,18 +231,19 @@ impl<const N: usize> Spline<N> {
             .map(|second| largest_multiple(&second, limits.acceleration()) * slack * step * step);
         let jerk =
             largest_multiple(&(d - c * 3.0 + b * 3.0 - a), limits.jerk()) * slack * step.powi(3);
-        // The velocity is a quadratic; its Bezier points, cut in two, bound the speed.
+        // The velocity is a quadratic; its Bezier points, cut in two, bound the speed and each axis.
         let [first, middle, last] = [(c - a) * 0.5, c - b, (d - b) * 0.5];
-        let speed = [
+        let mut speed = f64::INFINITY;
+        for velocity in [
             first,
             (first + middle) * 0.5,
             (first + middle * 2.0 + last) * 0.25,
             (middle + last) * 0.5,
             last,
-        ]
-        .iter()
-        .fold(0.0_f64, |most, velocity| most.max(velocity.norm()));
-        let speed = feedrate * slack * step / speed.max(f64::MIN_POSITIVE);
+        ] {
+            let multiple = largest_multiple(&velocity, limits.velocity());
+            speed = speed.min(multiple.min(feedrate / velocity.norm()) * slack * step);
+        }
         let [first, second] = accelerations;
         let changes = first.min(second).sqrt().min(jerk.cbrt());
         if changes < 1.0 {
