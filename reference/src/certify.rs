@@ -5,11 +5,10 @@
 //! corner, by what the largest speed allows. Intervals that might hold something faster are halved. Not
 //! here: several corners, for which this grows beyond bounds.
 
+use crate::bound::relaxed;
 use crate::course::{Course, Hold, Join, Leg};
 use crate::error::ReferenceError;
-use crate::formulation::Kind;
 use crate::grid::Grid;
-use crate::motion::least_time;
 use toolglide_kinematics::Vector;
 
 /// Share of the duration below which a gap is closed.
@@ -126,7 +125,7 @@ fn within<const N: usize>(course: &Course<N>, upper: f64, speed: f64, low: f64, 
     let counts = [intervals(low), 1, intervals(1.0 - high)];
     let times = [low * upper, (high - low) * upper, (1.0 - high) * upper];
     let grid = Grid::new(&times, &counts);
-    least_time(&three, &grid, Kind::Relaxed, None, 0.0).map_or(0.0, |least| least.bound(upper))
+    relaxed(&three, &grid, None, upper).unwrap_or(0.0)
 }
 
 #[allow(

@@ -4,6 +4,7 @@
 //! tube, so that the motion is allowed at every instant, and a bound from below at the same shares of
 //! time. The motion is a [`Plan`] like any other. Not here: how each of it is found.
 
+use crate::bound::relaxed;
 use crate::course::{Course, Hold, Join};
 use crate::durations::best_durations;
 use crate::error::ReferenceError;
@@ -148,8 +149,7 @@ pub fn optimum<const N: usize>(
         optimum.times = vec![straight.duration()];
         optimum.plan = straight;
     }
-    optimum.lower_bound = least_time(course, &grid, Kind::Relaxed, None, 0.0)
-        .map(|least| least.bound(optimum.duration()))
+    optimum.lower_bound = relaxed(course, &grid, None, optimum.duration())
         .ok_or_else(|| not_solved(course, &grid))?;
     Ok(optimum)
 }
