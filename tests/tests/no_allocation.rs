@@ -178,3 +178,39 @@ fn no_machine_allocates_to_find_its_axes() {
         assert_eq!(counted.count_total, 0, "{}: {counted:?}", model.name);
     }
 }
+
+#[test]
+fn planning_filtered_pulses_and_filtering_ticks_allocates_nothing() {
+    let path = mixed(20);
+    let chain = toolglide_fir::FilterChain::with_time_constants(&[0.05, 0.03]).unwrap();
+    for method in toolglide_fir::Method::ALL {
+        let settings = toolglide_fir::Settings::new(limits())
+            .with_method(method)
+            .with_chain(&chain)
+            .unwrap();
+        let mut planner = toolglide_fir::FirInterpolation::new(path.start(), &settings);
+        let mut pieces = 0_u64;
+        let counted = measure(|| {
+            for step in path.moves().iter().map(Some).chain([None]) {
+                match step {
+                    Some(step) => planner.push(step).unwrap(),
+                    None => planner.finish().unwrap(),
+                }
+                while let Some(piece) = planner.pull() {
+                    black_box(piece);
+                    pieces += 1;
+                }
+            }
+        });
+        assert!(pieces > 1_000, "{pieces} pieces");
+        assert_eq!(counted.count_total, 0, "{}: {counted:?}", method.name());
+    }
+    let period = SamplePeriod::new(1e-3).unwrap();
+    let mut filter = toolglide_fir::TickFilter::new(&chain, period, [0_i64; 3]).unwrap();
+    let counted = measure(|| {
+        for tick in 0..10_000 {
+            black_box(filter.tick([tick, -tick, 7]));
+        }
+    });
+    assert_eq!(counted.count_total, 0, "ticks: {counted:?}");
+}

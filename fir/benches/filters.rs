@@ -1,0 +1,73 @@
+//! Time of a tick, of the closed form, and of planning a block.
+#![allow(clippy::unwrap_used, reason = "a bench that cannot start may panic")]
+#![allow(missing_docs, reason = "criterion makes functions without")]
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use std::f64::consts::TAU;
+use std::hint::black_box;
+use toolglide_fir::{FilterChain, PulseTrain, Settings, TickFilter, plan};
+use toolglide_kinematics::{Feedrate, Limits, SamplePeriod, Tolerance, Toolpath, Vector};
+
+fn chain() -> FilterChain {
+    FilterChain::with_time_constants(&[0.1, 0.06]).unwrap()
+}
+
+fn ticks(criterion: &mut Criterion) {
+    let period = SamplePeriod::new(0.001).unwrap();
+    let mut filter = TickFilter::new(&chain(), period, [0_i64; 3]).unwrap();
+    let mut position = 0_i64;
+    criterion.bench_function("a tick of three axes behind two filters", |bencher| {
+        bencher.iter(|| {
+            position = (position + 12_345) & 0xFFF_FFFF;
+            filter.tick(black_box([position, -position, position >> 1]))
+        });
+    });
+}
+
+fn closed_form(criterion: &mut Criterion) {
+    let mut train = PulseTrain::starting_at(Vector::<3>::zeros(), chain());
+    for number in 0..100_u32 {
+        let angle = TAU * (f64::from(number) * 0.618_034).fract();
+        let end = train.end() + Vector::<3>::new(angle.cos(), angle.sin(), 0.1) * 20.0;
+        train.line_to(end, 50.0, 0.05).unwrap();
+    }
+    let duration = train.duration();
+    let mut time = 0.0;
+    criterion.bench_function("the closed form of lines at a time", |bencher| {
+        bencher.iter(|| {
+            time = (time + 0.001_3) % duration;
+            train.position(black_box(time))
+        });
+    });
+}
+
+/// A star of five round arms.
+fn star(count: u32) -> Toolpath<2> {
+    let points: Vec<_> = (0..=count)
+        .map(|number| TAU * f64::from(number) / f64::from(count))
+        .map(|angle| {
+            let radius = 30.0 * (1.0 + 0.35 * (5.0 * angle).cos());
+            Vector::<2>::new(radius * angle.cos(), radius * angle.sin())
+        })
+        .collect();
+    let feedrate = Feedrate::new(50.0).unwrap();
+    Toolpath::from_points(&points, feedrate, Tolerance::new(0.03).unwrap()).unwrap()
+}
+
+fn planning(criterion: &mut Criterion) {
+    let settings = Settings::new(Limits::uniform(500.0, 2_500.0, 2e5).unwrap())
+        .with_chain(&chain())
+        .unwrap();
+    let mut group = criterion.benchmark_group("planning a star");
+    for count in [125, 250, 500] {
+        let path = star(count);
+        group.throughput(Throughput::Elements(count.into()));
+        group.bench_function(format!("{count} moves"), |bencher| {
+            bencher.iter(|| plan(black_box(&path), &settings).unwrap());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, ticks, closed_form, planning);
+criterion_main!(benches);

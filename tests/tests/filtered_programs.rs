@@ -1,0 +1,76 @@
+//! Filtered pulses on programs by others, and where corners are dense.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+use std::f64::consts::TAU;
+use toolglide_fir::{FilterChain, FirInterpolation, Method, Settings, plan};
+use toolglide_kinematics::{
+    Feedrate, Judge, Limits, MotionPlanner, Tolerance, Toolpath, Trajectory, Vector, verify,
+};
+use toolglide_tests::corpus;
+
+#[test]
+fn programs_of_arcs_are_followed_within_the_tolerance() {
+    let limits = Limits::uniform(500.0, 2_500.0, 2e5).unwrap();
+    for name in [
+        "tinyg/FordEmblem.gcode",
+        "ugs/arc_rword_test.gcode",
+        "linuxcnc/arcspiral.ngc",
+    ] {
+        let name = format!("corpus/{name}");
+        let Some(text) = corpus::text(&name) else {
+            continue;
+        };
+        let moves = corpus::moves(&text, &name, 0.01).unwrap();
+        let mut planner = FirInterpolation::new(Vector::zeros(), &Settings::new(limits));
+        let mut judge = Judge::new(Vector::zeros(), limits);
+        for step in moves.iter().map(Some).chain([None]) {
+            match step {
+                Some(step) => {
+                    judge.expect(step).unwrap();
+                    planner.push(step).unwrap();
+                }
+                None => planner.finish().unwrap(),
+            }
+            while let Some(piece) = planner.pull() {
+                judge.observe(&piece);
+            }
+        }
+        let report = judge.finish();
+        assert!(report.passes(), "{name}: {:#?}", report.examples);
+    }
+}
+
+/// Moves along a closed curve around the origin.
+fn around(count: u32, radius: impl Fn(f64) -> f64, tolerance: f64) -> Toolpath<2> {
+    let points: Vec<_> = (0..=count)
+        .map(|number| TAU * f64::from(number) / f64::from(count))
+        .map(|angle| Vector::<2>::new(angle.cos(), angle.sin()) * radius(angle))
+        .collect();
+    let feedrate = Feedrate::new(50.0).unwrap();
+    Toolpath::from_points(&points, feedrate, Tolerance::new(tolerance).unwrap()).unwrap()
+}
+
+#[test]
+fn dense_turns_keep_the_tolerance_and_are_faster_than_dwelling_at_every_corner() {
+    let limits = Limits::uniform(500.0, 2_500.0, 2e5).unwrap();
+    let chain = FilterChain::with_time_constants(&[0.1, 0.06]).unwrap();
+    let settings = Settings::new(limits).with_chain(&chain).unwrap();
+    let star = |angle: f64| 15.0 * (1.0 + 0.35 * (5.0 * angle).cos());
+    // The printed overlap takes 10.30 s on the star and breaks the tolerance by 83 %.
+    for (path, most) in [
+        (around(250, star, 0.03), 10.30),
+        (around(500, |_| 20.0, 0.03), 5.0),
+    ] {
+        let motion = plan(&path, &settings).unwrap();
+        let report = verify(&motion, &path, &limits);
+        assert!(report.passes(), "{:#?}", report.examples);
+        assert!(motion.duration() < most, "{} s", motion.duration());
+        let stopping = settings.clone().with_method(Method::PointToPoint);
+        let stopping = plan(&path, &stopping).unwrap().duration();
+        assert!(
+            motion.duration() < 0.25 * stopping,
+            "{stopping} s with stops"
+        );
+    }
+}
