@@ -6,7 +6,8 @@ use crate::args::{JobArgs, PerAxis};
 use crate::error::CliError;
 use std::path::Path;
 use toolglide_kinematics::{
-    Axis, AxisKind, AxisLimits, Limits, MachineKinematics, SamplePeriod, Tolerance, Vector,
+    Axis, AxisKind, AxisLimits, AxisVector, Limits, MachineKinematics, SamplePeriod, Tolerance,
+    ToolPose, Vector,
 };
 use toolglide_machines::{MachineConfig, ModeConfig, find, load};
 use toolglide_program::ToolTable;
@@ -85,26 +86,13 @@ impl Setup {
         period: Option<f64>,
     ) -> Result<Self, CliError> {
         let axes = limited(machine.axes(), job)?;
-        let mut start = match &job.start {
-            Some(start) => one_per_axis("--start", start, axes.len())?,
-            None => vec![0.0; axes.len()],
+        let start = match &job.start {
+            Some(given) => started(&axes, given)?,
+            None if is_straight(&config, machine) => {
+                started(&axes, &PerAxis(vec![0.0; axes.len()]))?
+            }
+            None => at_program_zero(machine),
         };
-        for (axis, position) in axes.iter().zip(&mut start) {
-            if axis.kind == AxisKind::Rotary {
-                *position = position.to_radians();
-            }
-        }
-        for (axis, &position) in axes.iter().zip(&start) {
-            if let Some((low, high)) = axis.travel
-                && !(low..=high).contains(&position)
-            {
-                return Err(CliError::Option {
-                    option: "--start",
-                    value: format!("{} = {position}", axis.name),
-                    bound: format!("the travel of this axis is {low} to {high}"),
-                });
-            }
-        }
         let tolerance = match job.tolerance {
             Some(length) => Tolerance::new(length).map_err(|reason| CliError::Option {
                 option: "--tolerance",
@@ -156,6 +144,52 @@ impl Setup {
     pub(crate) fn letters(&self) -> Vec<char> {
         self.axes.iter().map(|axis| axis.name).collect()
     }
+}
+
+/// Where the command line says that the axes start, mm and rad.
+fn started(axes: &[Axis], given: &PerAxis) -> Result<Vec<f64>, CliError> {
+    let mut start = one_per_axis("--start", given, axes.len())?;
+    for (axis, position) in axes.iter().zip(&mut start) {
+        let unit = match axis.kind {
+            AxisKind::Linear => 1.0,
+            AxisKind::Rotary => 1.0_f64.to_radians(),
+        };
+        let written = *position;
+        *position *= unit;
+        if let Some((low, high)) = axis.travel
+            && !(low..=high).contains(position)
+        {
+            return Err(CliError::Option {
+                option: "--start",
+                value: format!("{} = {written}", axis.name),
+                bound: format!(
+                    "the travel of this axis is {} to {}",
+                    low / unit,
+                    high / unit
+                ),
+            });
+        }
+    }
+    Ok(start)
+}
+
+/// The axes with the tool upright and its tip at program zero; where the machine cannot have it
+/// there, as near to 0 as they can be.
+fn at_program_zero(machine: &dyn MachineKinematics) -> Vec<f64> {
+    let axes = machine.axes();
+    let near: Vec<f64> = axes
+        .iter()
+        .map(|axis| {
+            axis.travel
+                .map_or(0.0, |(low, high)| 0.0_f64.clamp(low, high))
+        })
+        .collect();
+    let tool = ToolPose::upright(Vector::zeros()).ok();
+    AxisVector::from_slice(&near)
+        .ok()
+        .zip(tool)
+        .and_then(|(near, tool)| machine.inverse(&tool, &near).ok())
+        .map_or(near, |start| start.to_vec())
 }
 
 fn checked_period(seconds: f64) -> Result<SamplePeriod, CliError> {

@@ -80,13 +80,13 @@ pub(crate) fn worst(
     let mut part = 0.0;
     while part <= parts {
         let time = piece.duration * part / parts;
-        near = machine.inverse(&piece.extended(time), &near)?;
+        near = machine.follow(&piece.extended(time), &near)?;
         let mut around = [near; 7];
         for (offset, axes) in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]
             .iter()
             .zip(&mut around)
         {
-            *axes = machine.inverse(&piece.extended(time + offset * STEP), &near)?;
+            *axes = machine.follow(&piece.extended(time + offset * STEP), &near)?;
         }
         for (axis, limits) in axes.iter().enumerate() {
             let sum = |weights: &[f64; 7]| {

@@ -263,7 +263,7 @@ impl<'m> PosePlanner<'m> {
             )?;
             near = self
                 .machine
-                .inverse(&pose, &near)
+                .follow(&pose, &near)
                 .map_err(|reason| FiveAxisError::Machine {
                     index: block.leg,
                     reason,
@@ -302,12 +302,12 @@ impl<'m> PosePlanner<'m> {
                             index: block.leg,
                             reason,
                         })?;
-                    self.machine.inverse(&pose, &start).map_err(|reason| {
-                        FiveAxisError::Machine {
+                    self.machine
+                        .follow(&pose, &start)
+                        .map_err(|reason| FiveAxisError::Machine {
                             index: block.leg,
                             reason,
-                        }
-                    })?
+                        })?
                 } else {
                     *last
                 };

@@ -109,7 +109,7 @@ impl<'m> PoseSampler<'m> {
         let pose = match &self.piece {
             Some(PosePiece::Tool(piece)) => {
                 let pose = piece.at(since);
-                self.axes = self.machine.inverse(&pose, &self.axes)?;
+                self.axes = self.machine.follow(&pose, &self.axes)?;
                 pose
             }
             Some(PosePiece::Axes(piece)) => {

@@ -79,8 +79,11 @@ pub trait MachineKinematics: Send + Sync {
     /// [`MachineKinematics::forward`] says of `near`.
     fn inverse(&self, pose: &ToolPose, near: &AxisVector) -> Result<AxisVector, KinematicsError>;
 
-    /// As [`MachineKinematics::inverse`], for a pose a small motion away from `near`: an axis that
-    /// would have to turn back by a whole turn to stay within its travel has reached its end.
+    /// As [`MachineKinematics::inverse`], for a pose a small motion away from `near`: the nearest
+    /// branch on the nearest turn, or nothing. An axis that could stay within its travel only by a
+    /// turn back, or in another branch, has come to its end.
+    ///
+    /// A machine with several branches says this itself; without that, whole turns are looked for.
     ///
     /// # Errors
     /// As [`MachineKinematics::inverse`]; [`KinematicsError::Travel`] names the axis that has come

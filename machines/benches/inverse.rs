@@ -5,7 +5,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use toolglide_kinematics::{AxisKind, AxisVector, ToolPose};
-use toolglide_machines::{Registry, models};
+use toolglide_machines::models;
 
 /// Poses that are gone through again and again.
 const POSES: u32 = 1024;
@@ -44,11 +44,19 @@ fn inverse(criterion: &mut Criterion) {
                 axes
             });
         });
+        criterion.bench_function(&format!("follow {}", model.name), |bencher| {
+            bencher.iter(|| {
+                tick = (tick + 1) % poses.len();
+                axes = machine
+                    .follow(black_box(&poses[tick]), &axes)
+                    .expect("in reach");
+                axes
+            });
+        });
         criterion.bench_function(&format!("forward {}", model.name), |bencher| {
             bencher.iter(|| machine.forward(black_box(&axes)).expect("in reach"));
         });
     }
-    black_box(Registry::registered());
 }
 
 criterion_group!(benches, inverse);

@@ -148,6 +148,8 @@ fn preset() -> MachineConfig {
         ("c3", 755.0),
         ("c4", 85.0),
         ("tool_length", 150.0),
+        ("workpiece_x", 900.0),
+        ("workpiece_z", 400.0),
     ] {
         config.geometry.insert(name.to_owned(), value);
     }

@@ -60,6 +60,8 @@ fn preset() -> MachineConfig {
     );
     config.geometry.insert("upper_arm".to_owned(), 325.0);
     config.geometry.insert("forearm".to_owned(), 275.0);
+    config.geometry.insert("workpiece_x".to_owned(), 350.0);
+    config.geometry.insert("workpiece_z".to_owned(), -100.0);
     config
 }
 
@@ -90,7 +92,7 @@ mod tests {
     #[test]
     fn the_elbow_stays_on_its_side() {
         let machine = build(&preset()).unwrap();
-        let pose = ToolPose::upright(Vector::<3>::new(325.0, 275.0, -10.0)).unwrap();
+        let pose = ToolPose::upright(Vector::<3>::new(-25.0, 275.0, 90.0)).unwrap();
         let right = std::f64::consts::FRAC_PI_2;
         for b in [0.1, -0.1] {
             let near = AxisVector::from([0.7, b, 0.0]);
@@ -108,7 +110,7 @@ mod tests {
     #[test]
     fn a_tool_beyond_the_stretched_arm_is_refused() {
         let machine = build(&preset()).unwrap();
-        let pose = ToolPose::upright(Vector::<3>::new(601.5, 0.0, 0.0)).unwrap();
+        let pose = ToolPose::upright(Vector::<3>::new(251.5, 0.0, 0.0)).unwrap();
         let refused = machine.inverse(&pose, &AxisVector::zeros(3)).unwrap_err();
         assert!(refused.to_string().ends_with("1.5 mm too far"), "{refused}");
         let tilted = ToolPose::new(Vector::zeros(), Vector::<3>::x()).unwrap();

@@ -174,16 +174,23 @@ impl<S: Structure<N> + 'static, const N: usize> Assembly<S, N> {
         self.structure.branches(&on_machine, &joints)
     }
 
-    /// Axis positions of one branch on the turns nearest to `near`, the axis that leaves its travel
-    /// if there is one, and how far the rotary axes are from `near`, rad².
-    fn positions(&self, joints: &[f64; N], near: &AxisVector) -> (AxisVector, Option<usize>, f64) {
+    /// Axis positions of one branch on the turns nearest to `near` (those within travel, if there
+    /// are, unless the motion `goes_on`), the axis that leaves its travel if there is one, and how
+    /// far the rotary axes are from `near`, rad².
+    fn positions(
+        &self,
+        joints: &[f64; N],
+        near: &AxisVector,
+        goes_on: bool,
+    ) -> (AxisVector, Option<usize>, f64) {
         let mut positions = AxisVector::zeros(N);
         let mut outside = None;
         let mut distance = 0.0;
         for (index, axis) in self.axes.iter().enumerate() {
             let mut position = self.zeros[index] + self.signs[index] * joints[index];
             if axis.kind == AxisKind::Rotary {
-                position = turned(position, near[index], axis.travel);
+                let ends = axis.travel.filter(|_| !goes_on);
+                position = turned(position, near[index], ends);
                 distance += (position - near[index]).powi(2);
             }
             positions[index] = position;
@@ -272,7 +279,7 @@ impl<S: Structure<N> + 'static, const N: usize> MachineKinematics for Assembly<S
         let mut best: Option<(AxisVector, f64)> = None;
         let mut refused: Option<(usize, f64, f64)> = None;
         for joints in branches.as_slice() {
-            let (positions, outside, distance) = self.positions(joints, near);
+            let (positions, outside, distance) = self.positions(joints, near, false);
             match outside {
                 None if best.is_none_or(|(_, least)| distance < least) => {
                     best = Some((positions, distance));
@@ -292,12 +299,30 @@ impl<S: Structure<N> + 'static, const N: usize> MachineKinematics for Assembly<S
         }
     }
 
+    fn follow(&self, pose: &ToolPose, near: &AxisVector) -> Result<AxisVector, KinematicsError> {
+        let branches = self.branches(pose, near)?;
+        let mut nearest: Option<(AxisVector, Option<usize>, f64)> = None;
+        for joints in branches.as_slice() {
+            let found = self.positions(joints, near, true);
+            if nearest.is_none_or(|(_, _, least)| found.2 < least) {
+                nearest = Some(found);
+            }
+        }
+        match nearest {
+            Some((positions, None, _)) => Ok(positions),
+            Some((positions, Some(axis), _)) => Err(self.refused(axis, positions[axis])),
+            None => Err(KinematicsError::Unreachable {
+                reason: "no branch of the machine gives it",
+            }),
+        }
+    }
+
     fn solutions(&self, pose: &ToolPose, near: &AxisVector) -> Result<Solutions, KinematicsError> {
         let branches = self.branches(pose, near)?;
         let mut solutions = Solutions::none();
         let mut distances = [0.0; MOST_SOLUTIONS];
         for joints in branches.as_slice() {
-            let (positions, outside, distance) = self.positions(joints, near);
+            let (positions, outside, distance) = self.positions(joints, near, false);
             if outside.is_some() {
                 continue;
             }

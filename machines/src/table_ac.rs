@@ -240,31 +240,30 @@ mod tests {
 
     #[test]
     fn a_motion_ends_where_the_travel_of_c_ends() {
-        let mut config = preset();
-        config.axis[3].travel = Some([0.0, 120.0]);
-        config.axis[4].travel = Some([-200.0, 200.0]);
-        let machine = build(&config).unwrap();
-        let [mut c, step, end] = degrees([0.0, 1.0, 200.0]);
-        let mut axes = AxisVector::from([0.0, 0.0, 0.0, 0.5, c]);
-        let refused = loop {
-            c += step;
-            let orientation = Vector::<3>::new(
-                0.5_f64.sin() * c.sin(),
-                0.5_f64.sin() * c.cos(),
-                0.5_f64.cos(),
+        for travel in [[0.0, 120.0], [-120.0, 120.0]] {
+            let mut config = preset();
+            config.axis[3].travel = Some(travel);
+            config.axis[4].travel = Some([-200.0, 200.0]);
+            let machine = build(&config).unwrap();
+            let [mut c, step, end] = degrees([0.0, 1.0, 200.0]);
+            let mut axes = AxisVector::from([0.0, 0.0, 0.0, 0.5, c]);
+            let refused = loop {
+                c += step;
+                let (lean, height) = 0.5_f64.sin_cos();
+                let orientation = Vector::<3>::new(lean * c.sin(), lean * c.cos(), height);
+                let pose = ToolPose::new(Vector::zeros(), orientation).unwrap();
+                match machine.follow(&pose, &axes) {
+                    Ok(next) => axes = next,
+                    Err(refused) => break refused,
+                }
+            };
+            assert!((axes[4] - end).abs() < 1e-9, "{axes:?}");
+            assert!(
+                matches!(refused, KinematicsError::Travel { axis: 'C', position, .. }
+                    if (position - end - step).abs() < 1e-9),
+                "{refused}"
             );
-            let pose = ToolPose::new(Vector::zeros(), orientation).unwrap();
-            match machine.follow(&pose, &axes) {
-                Ok(next) => axes = next,
-                Err(refused) => break refused,
-            }
-        };
-        assert!((axes[4] - end).abs() < 1e-9, "{axes:?}");
-        assert!(
-            matches!(refused, KinematicsError::Travel { axis: 'C', position, .. }
-                if (position - end - step).abs() < 1e-9),
-            "{refused}"
-        );
+        }
     }
 
     #[test]

@@ -24,7 +24,9 @@ fn both(lengths: [f64; 7]) -> (Box<dyn MachineKinematics>, OPWKinematics) {
     for (name, length) in NAMES.into_iter().zip(lengths) {
         config.geometry.insert(name.to_owned(), length);
     }
-    config.geometry.insert("tool_length".to_owned(), 0.0);
+    for name in ["tool_length", "workpiece_x", "workpiece_z"] {
+        config.geometry.insert(name.to_owned(), 0.0);
+    }
     for axis in &mut config.axis {
         axis.travel = None;
     }

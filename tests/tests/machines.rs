@@ -5,8 +5,8 @@
 use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{FiveAxisError, PoseMethod, PosePlanner, PoseSettings};
 use toolglide_kinematics::{
-    AxisVector, Feedrate, MachineKinematics, OrientationTolerance, PoseFeed, PoseJudge, PoseLeg,
-    PoseReport, Tolerance, ToolPose, Vector,
+    AxisVector, Feedrate, KinematicsError, MachineKinematics, OrientationTolerance, PoseFeed,
+    PoseJudge, PoseLeg, PoseReport, Tolerance, ToolPose, Vector,
 };
 use toolglide_machines::{MachineConfig, find, models};
 
@@ -41,11 +41,9 @@ fn poses(machine: &dyn MachineKinematics, place: Vector<3>) -> Vec<ToolPose> {
         .collect()
 }
 
-/// A place in the middle of what the preset reaches.
+/// A place well inside of what the preset reaches.
 fn place(model: &str) -> Vector<3> {
     match model {
-        "arm-6r" => Vector::<3>::new(900.0, 100.0, 400.0),
-        "scara" => Vector::<3>::new(350.0, 100.0, -50.0),
         "delta" => Vector::<3>::new(0.0, 0.0, 50.0),
         _ => Vector::<3>::new(5.0, -8.0, 20.0),
     }
@@ -105,4 +103,28 @@ fn every_machine_keeps_its_limits_and_both_tolerances() {
             );
         }
     }
+}
+#[test]
+fn a_motion_that_needs_more_turns_than_there_are_is_refused() {
+    let mut config = (find("table-ac").unwrap().preset)();
+    config.axis[4].travel = Some([-200.0, 200.0]);
+    config.axis[3].travel = Some([0.0, 90.0]);
+    let around: Vec<ToolPose> = (0..=24)
+        .map(|step| {
+            let (sin, cos) = f64::from(20 * step).to_radians().sin_cos();
+            let orientation = Vector::<3>::new(0.4 * sin, 0.4 * cos, 1.0).normalize();
+            ToolPose::new(Vector::<3>::new(20.0 * sin, 20.0 * cos, 0.0), orientation).unwrap()
+        })
+        .collect();
+    let refused = planned(&config, &around, PoseMethod::DwellControlled);
+    assert!(
+        matches!(
+            refused,
+            Err(FiveAxisError::Machine {
+                reason: KinematicsError::Travel { axis: 'C', .. },
+                ..
+            })
+        ),
+        "{refused:?}"
+    );
 }

@@ -12,9 +12,13 @@ use std::io::BufRead;
 use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{FiveAxisError, Resolver};
 use toolglide_kinematics::{
-    AxisVector, MachineKinematics, OrientationTolerance, PoseEnd, PoseLeg, PoseMove,
+    AxisKind, AxisVector, KinematicsError, MachineKinematics, OrientationTolerance, PoseEnd,
+    PoseLeg, PoseMove,
 };
 use toolglide_program::{Language, Poses, Settings};
+
+/// Decimals of a degree that are shown.
+const DECIMALS: f64 = 1e6;
 
 /// The first filter is longer than the second by this factor where nobody says otherwise.
 const FIRST_TO_SECOND: f64 = 2.0;
@@ -195,11 +199,36 @@ impl Legs<'_> {
     }
 }
 
-/// A refused pose with its place.
+/// A refused pose with its place; ends of rotary axes in degrees.
 pub(crate) fn refused(program: &str, line: u32, reason: FiveAxisError) -> CliError {
+    let reason = match reason {
+        FiveAxisError::Machine {
+            index,
+            reason:
+                KinematicsError::Travel {
+                    axis,
+                    kind: AxisKind::Rotary,
+                    position,
+                    low,
+                    high,
+                },
+        } => {
+            let [position, low, high] = [position, low, high].map(degrees);
+            let beyond = degrees((low - position).max(position - high).to_radians());
+            format!(
+                "move {index}: axis {axis}: position {position} is outside the travel {low} to {high} deg by {beyond}"
+            )
+        }
+        other => other.to_string(),
+    };
     CliError::Line {
         program: program.to_owned(),
         line,
-        reason: reason.to_string(),
+        reason,
     }
+}
+
+/// An angle in degrees, without what rounding added to it.
+fn degrees(angle: f64) -> f64 {
+    (angle.to_degrees() * DECIMALS).round() / DECIMALS
 }

@@ -88,7 +88,7 @@ impl<'m> Follower<'m> {
             let at = middle - half * node_at(node);
             near = self
                 .machine
-                .inverse(&piece.extended(at), &near)
+                .follow(&piece.extended(at), &near)
                 .map_err(|reason| (at, reason))?;
             for (values, position) in self.values.iter_mut().zip(near.iter()) {
                 values[node] = *position;
