@@ -20,6 +20,7 @@ mod pulse;
 mod resonator;
 mod settings;
 mod sweep;
+mod tick_pulse;
 mod ticks;
 mod train;
 
@@ -30,5 +31,6 @@ pub use mode::Mode;
 pub use planner::{FirInterpolation, plan};
 pub use resonator::Resonator;
 pub use settings::{Method, Settings};
-pub use ticks::{TickFilter, TickPulse};
+pub use tick_pulse::TickPulse;
+pub use ticks::TickFilter;
 pub use train::PulseTrain;

@@ -8,6 +8,7 @@
 
 use crate::chain::FilterChain;
 use crate::error::FirError;
+use crate::tick_pulse::TICK_ROUNDING;
 use std::ops::{AddAssign, Mul, Sub};
 use toolglide_kinematics::SamplePeriod;
 
@@ -23,9 +24,6 @@ const MOST_LONG: i128 = 1 << 86;
 /// Most ticks that all filters hold together: some seconds at 100 kHz.
 const MOST_TICKS: usize = 1 << 20;
 
-/// A duration may exceed a whole number of ticks by this share of a tick without taking another one.
-const TICK_ROUNDING: f64 = 1e-9;
-
 /// Moving averages of the commanded positions of `N` axes, one tick after the other.
 ///
 /// Positions are integers in a unit of the caller's choice, such as 1 nm, up to 2^40 of them.
@@ -40,7 +38,7 @@ const TICK_ROUNDING: f64 = 1e-9;
 /// let chain = FilterChain::with_time_constants(&[0.003, 0.002])?;
 /// let mut filter = TickFilter::new(&chain, SamplePeriod::new(0.001)?, [0_i64])?;
 /// let positions: Vec<_> = (0..6).map(|_| filter.tick([3600])[0]).collect();
-/// assert_eq!(positions, [100, 800, 2000, 3100, 3600, 3600]);
+/// assert_eq!(positions, [100, 700, 1800, 2900, 3500, 3600]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -297,80 +295,6 @@ fn narrowed(value: i128) -> i64 {
     value as i64
 }
 
-/// A straight move as commanded positions, tick by tick, which ends exactly.
-///
-/// The move takes a whole number of ticks, so that its feedrate is a little lower than asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TickPulse<const N: usize> {
-    from: [i64; N],
-    by: [i64; N],
-    ticks: u32,
-    tick: u32,
-}
-
-impl<const N: usize> TickPulse<N> {
-    /// A move that lasts `duration` seconds or up to a tick longer.
-    ///
-    /// # Errors
-    /// [`FirError::ShorterThanTick`] for a duration below a period, [`FirError::NotPositive`] for one that is
-    /// not positive and finite, [`FirError::TooManyTicks`] for one of more than 2^31 ticks.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "checked before"
-    )]
-    pub fn new(
-        from: [i64; N],
-        to: [i64; N],
-        duration: f64,
-        period: SamplePeriod,
-    ) -> Result<Self, FirError> {
-        if !(duration > 0.0 && duration.is_finite()) {
-            return Err(FirError::NotPositive {
-                quantity: "duration",
-                value: duration,
-            });
-        }
-        let period = period.seconds();
-        if duration < period * (1.0 - TICK_ROUNDING) {
-            return Err(FirError::ShorterThanTick { duration, period });
-        }
-        let ticks = (duration / period - TICK_ROUNDING).ceil();
-        if ticks > f64::from(i32::MAX) {
-            return Err(FirError::TooManyTicks {
-                ticks: ticks as usize,
-                most: i32::MAX as usize,
-            });
-        }
-        Ok(Self {
-            from,
-            by: std::array::from_fn(|axis| to[axis].wrapping_sub(from[axis])),
-            ticks: ticks as u32,
-            tick: 0,
-        })
-    }
-}
-
-impl<const N: usize> Iterator for TickPulse<N> {
-    type Item = [i64; N];
-
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "a share of a 64-bit distance is one"
-    )]
-    fn next(&mut self) -> Option<[i64; N]> {
-        if self.tick == self.ticks {
-            return None;
-        }
-        self.tick += 1;
-        let (tick, ticks) = (i128::from(self.tick), i128::from(self.ticks));
-        Some(std::array::from_fn(|axis| {
-            let passed = (i128::from(self.by[axis]) * tick).div_euclid(ticks);
-            self.from[axis].wrapping_add(passed as i64)
-        }))
-    }
-}
-
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -390,7 +314,7 @@ fn ticks_of(time_constant: f64, period: SamplePeriod) -> Result<usize, FirError>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PulseTrain;
+    use crate::{PulseTrain, TickPulse};
     use toolglide_kinematics::Vector;
 
     const PERIOD: f64 = 0.001;
