@@ -9,6 +9,10 @@ use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 /// A slack starts at least this far inside, in shares of the bound.
 const LEAST_SLACK: f64 = 0.1;
 
+/// A vector lies inside its cone by at least this share of its length: some rounding of a step that
+/// would have ended nearer.
+const ROUNDING: f64 = 1e-13;
+
 /// What all rows of a problem add up to in one iteration.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sums {
@@ -160,6 +164,15 @@ impl<const N: usize> Pair<N> {
         }
     }
 
+    /// Itself, but inside by more than rounding.
+    #[inline(always)]
+    fn inside(&self) -> Self {
+        Self {
+            head: self.head.max(self.tail.norm() * (1.0 + ROUNDING)),
+            tail: self.tail,
+        }
+    }
+
     /// The product in the algebra of the cone.
     #[inline(always)]
     fn product(&self, other: &Self) -> Self {
@@ -169,10 +182,10 @@ impl<const N: usize> Pair<N> {
         }
     }
 
-    /// What times `self` is `product`.
+    /// What times `self`, whose determinant is known, is `product`.
     #[inline(always)]
-    fn divide(&self, product: &Self) -> Self {
-        let head = (self.head * product.head - self.tail.dot(&product.tail)) / self.determinant();
+    fn divide(&self, determinant: f64, product: &Self) -> Self {
+        let head = (self.head * product.head - self.tail.dot(&product.tail)) / determinant;
         Self {
             head,
             tail: (product.tail - self.tail * head) / self.head,
@@ -181,9 +194,8 @@ impl<const N: usize> Pair<N> {
 
     /// Reciprocal of the longest step along `change` inside the cone, 0 where there is no end.
     #[inline(always)]
-    fn reach(&self, change: &Self) -> f64 {
+    fn reach(&self, determinant: f64, change: &Self) -> f64 {
         // With r the reciprocal of the step: determinant r² + 2 mixed r + square = 0.
-        let determinant = self.determinant();
         let mixed = self.head * change.head - self.tail.dot(&change.tail);
         let square = change.head * change.head - change.tail.norm_squared();
         let discriminant = mixed * mixed - determinant * square;
@@ -205,6 +217,8 @@ impl<const N: usize> Pair<N> {
 struct Scaling<const N: usize> {
     point: Pair<N>,
     size: f64,
+    /// Determinant of slack and multiplier in the common scale.
+    determinant: f64,
 }
 
 impl<const N: usize> Scaling<N> {
@@ -221,6 +235,7 @@ impl<const N: usize> Scaling<N> {
                 tail: (slack.tail * by_slack - multiplier.tail * by_multiplier) * half,
             },
             size: (of_slack * by_multiplier).sqrt(),
+            determinant: of_slack * of_multiplier,
         }
     }
 
@@ -302,6 +317,7 @@ impl<const N: usize> Default for Cone<N> {
             scaling: Scaling {
                 point: Pair::UNIT,
                 size: 1.0,
+                determinant: 1.0,
             },
         }
     }
@@ -345,8 +361,13 @@ impl<const N: usize> Cone<N> {
             tail: -scaled.tail - scaled_slack_change.tail,
         };
         // In the common scale slack and multiplier are the same.
-        reach.primal = reach.primal.max(scaled.reach(&scaled_slack_change));
-        reach.dual = reach.dual.max(scaled.reach(&scaled_multiplier_change));
+        let determinant = self.scaling.determinant;
+        reach.primal = reach
+            .primal
+            .max(scaled.reach(determinant, &scaled_slack_change));
+        reach.dual = reach
+            .dual
+            .max(scaled.reach(determinant, &scaled_multiplier_change));
         reach.by_slack += scaled.dot(&scaled_slack_change);
         reach.by_multiplier += scaled.dot(&scaled_multiplier_change);
         reach.by_both += scaled_slack_change.dot(&scaled_multiplier_change);
@@ -361,7 +382,9 @@ impl<const N: usize> Cone<N> {
             head: centre.complementarity - centre.second_order * self.target.head,
             tail: self.target.tail * -centre.second_order,
         };
-        self.target = self.scaling.down(&scaled.divide(&product));
+        self.target = self
+            .scaling
+            .down(&scaled.divide(self.scaling.determinant, &product));
         let residual = self.scaling.weight().times(&self.residual);
         residual.plus(-1.0, &self.target)
     }
@@ -375,17 +398,21 @@ impl<const N: usize> Cone<N> {
             .target
             .plus(-1.0, &self.multiplier)
             .plus(-1.0, &weighted);
-        reach.primal = reach.primal.max(self.slack.reach(&self.slack_change));
-        reach.dual = reach
-            .dual
-            .max(self.multiplier.reach(&self.multiplier_change));
+        reach.primal = reach.primal.max(
+            self.slack
+                .reach(self.slack.determinant(), &self.slack_change),
+        );
+        reach.dual = reach.dual.max(
+            self.multiplier
+                .reach(self.multiplier.determinant(), &self.multiplier_change),
+        );
     }
 
     /// As [`Side::advance`].
     #[inline(always)]
     pub(crate) fn advance(&mut self, primal: f64, dual: f64) {
-        self.slack = self.slack.plus(primal, &self.slack_change);
-        self.multiplier = self.multiplier.plus(dual, &self.multiplier_change);
+        self.slack = self.slack.plus(primal, &self.slack_change).inside();
+        self.multiplier = self.multiplier.plus(dual, &self.multiplier_change).inside();
     }
 }
 
@@ -421,7 +448,7 @@ mod tests {
     #[test]
     fn dividing_undoes_the_product() {
         let (one, other) = (pair(2.0, [0.5, -1.2]), pair(-0.3, [0.9, 2.0]));
-        let back = one.divide(&one.product(&other));
+        let back = one.divide(one.determinant(), &one.product(&other));
         assert!((back.head - other.head).abs() < 1e-14, "{back:?}");
         assert!((back.tail - other.tail).norm() < 1e-14, "{back:?}");
     }
@@ -434,11 +461,11 @@ mod tests {
             pair(0.5, [3.0, 0.3]),
             pair(-3.0, [0.0, 0.0]),
         ] {
-            let end = from.plus(1.0 / from.reach(&change), &change);
+            let end = from.plus(1.0 / from.reach(from.determinant(), &change), &change);
             assert!((end.head - end.tail.norm()).abs() < 1e-13, "{end:?}");
         }
         assert!(
-            from.reach(&pair(1.0, [0.2, 0.3])) < 1e-15,
+            from.reach(from.determinant(), &pair(1.0, [0.2, 0.3])) < 1e-15,
             "no end that way"
         );
     }

@@ -18,6 +18,10 @@ use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 
 pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
 
+/// Share of a curvature that is kept whatever is eliminated: what rounding may have taken from it,
+/// without which a sum of squares could turn negative.
+const ROUNDING: f64 = 1e-14;
+
 /// Slope of a quadratic of a point and the excess.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slope<const N: usize> {
@@ -382,7 +386,7 @@ impl<const N: usize> Cost<N> {
         ] = self.blocks;
         let own = |one: usize, two: usize| jerk.point * (weights[one] * weights[two]);
         // What is eliminated, and how it goes with the other three.
-        gain.inverse = inverse(last_last + own(3, 3))?;
+        gain.inverse = inverse(&last_last, &own(3, 3))?;
         let rows = [
             own(0, 3),
             one_last.transpose() + own(1, 3),
@@ -413,6 +417,7 @@ impl<const N: usize> Cost<N> {
             self.slope.state[0] + jerk.slope.point * weights[1],
             self.slope.state[1] + jerk.slope.point * weights[2],
         ];
+        let whole = [0, 1, 2].map(|one| self.blocks[one][one].diagonal());
         for one in 0..3 {
             for two in one..3 {
                 self.blocks[one][two] -= rows[one].tr_mul(&gain.state[two]);
@@ -424,7 +429,11 @@ impl<const N: usize> Cost<N> {
         // Rounding differs on both sides of the diagonal; unchecked, the difference multiplies.
         for one in 0..3 {
             let block = self.blocks[one][one];
-            self.blocks[one][one] = (block + block.transpose()) * 0.5;
+            let mut block = (block + block.transpose()) * 0.5;
+            for axis in 0..N {
+                block[(axis, axis)] += ROUNDING * whole[one][axis];
+            }
+            self.blocks[one][one] = block;
         }
         self.stretch -= stretch.dot(&gain.stretch);
         self.mixed -= stretch.dot(&gain.excess);
@@ -436,7 +445,8 @@ impl<const N: usize> Cost<N> {
 
     /// One segment back: its stretch is eliminated, with `curvature` and `slope` of its own rows.
     pub(crate) fn back_stretch(&mut self, curvature: f64, slope: f64) -> Option<StretchGain<N>> {
-        let curvature = self.stretch + curvature;
+        // What is left of a sum of squares is not negative but by rounding.
+        let curvature = self.stretch.max(0.0) + curvature;
         if curvature.is_nan() || curvature <= 0.0 {
             return None;
         }
@@ -550,11 +560,13 @@ impl<const N: usize> Gradient<N> {
     }
 }
 
-/// Inverse of a positive definite matrix; `None` where it is not.
+/// Inverse of a positive semidefinite matrix and a positive `diagonal`, which no pivot falls short
+/// of but by rounding; `None` where there is no number.
 #[inline(always)]
-fn inverse<const N: usize>(mut of: Square<N>) -> Option<Square<N>> {
+fn inverse<const N: usize>(of: &Square<N>, diagonal: &Square<N>) -> Option<Square<N>> {
+    let mut of = of + diagonal;
     for pivot in 0..N {
-        let value = of[(pivot, pivot)];
+        let value = of[(pivot, pivot)].max(diagonal[(pivot, pivot)]);
         if value.is_nan() || value <= 0.0 {
             return None;
         }

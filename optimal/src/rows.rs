@@ -40,6 +40,19 @@ pub(crate) trait Rows<const N: usize> {
 
     /// Goes along it.
     fn advance(&mut self, primal: f64, dual: f64);
+
+    /// What is kept, for another solver.
+    #[cfg(test)]
+    fn kept(bound: &Self::Bound) -> Kept<N>;
+}
+
+/// What a point keeps.
+#[cfg(test)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kept<const N: usize> {
+    Box(Bounds<N>),
+    Disc(Disc<N>),
+    Tube(Tube<N>),
 }
 
 /// Every coordinate within a bound of either sign.
@@ -63,6 +76,11 @@ impl<const N: usize> Default for InBox<N> {
 
 impl<const N: usize> Rows<N> for InBox<N> {
     type Bound = Bounds<N>;
+
+    #[cfg(test)]
+    fn kept(bound: &Bounds<N>) -> Kept<N> {
+        Kept::Box(*bound)
+    }
 
     fn reset(&mut self, bound: &Bounds<N>, point: &Vector<N>, excess: f64) -> f64 {
         let mut needed = 0.0_f64;
@@ -180,6 +198,11 @@ impl<const N: usize> Default for InDisc<N> {
 
 impl<const N: usize> Rows<N> for InDisc<N> {
     type Bound = Disc<N>;
+
+    #[cfg(test)]
+    fn kept(bound: &Disc<N>) -> Kept<N> {
+        Kept::Disc(*bound)
+    }
 
     fn reset(&mut self, bound: &Disc<N>, point: &Vector<N>, excess: f64) -> f64 {
         self.cone.reset(&bound.value(point, excess))
@@ -375,6 +398,11 @@ impl<const N: usize> InTube<N> {
 
 impl<const N: usize> Rows<N> for InTube<N> {
     type Bound = Tube<N>;
+
+    #[cfg(test)]
+    fn kept(bound: &Tube<N>) -> Kept<N> {
+        Kept::Tube(*bound)
+    }
 
     fn reset(&mut self, bound: &Tube<N>, point: &Vector<N>, excess: f64) -> f64 {
         self.progress = bound.along(&(point - bound.start)).clamp(0.0, 1.0);
