@@ -4,7 +4,7 @@
 //! linearised where the last one ended, shortened within a trust region, and linearised again. The
 //! point of linearisation need not obey the dynamics, because the next problem makes it so. Every
 //! third time, and at the end, the motion is restored with the durations fixed; only a restored
-//! motion is an answer.
+//! motion is an answer. Where none can be restored, the durations grow a little.
 //!
 //! Source: sequential convex programming; the linearisation in the durations is our own. Not here:
 //! how one problem is solved, see [`interior`](crate::interior).
@@ -42,6 +42,9 @@ const RESTORE_EVERY: usize = 3;
 const REPAIRS: usize = 2;
 const REPAIR_TRUST: f64 = 0.1;
 const REPAIR_WEIGHT: f64 = 250.0;
+
+/// Shares by which all durations grow, one after the other, where nothing else gives a motion.
+const SLOWER: [f64; 5] = [2e-3, 4e-3, 8e-3, 1.6e-2, 3.2e-2];
 
 /// What a shortening must come to. It is linearised again, so more digits are of no use.
 const SHORTENED: Precision = Precision {
@@ -248,7 +251,8 @@ impl<const N: usize> SequentialSolver<N> {
         let duration = self.durations.iter().sum();
         if excess <= ENOUGH && self.best_duration.is_none_or(|best| duration < best) {
             self.best_duration = Some(duration);
-            self.best.clone_from(&self.base);
+            self.best.states.clone_from(&self.base.states);
+            self.best.jerks.clone_from(&self.base.jerks);
             self.best_durations.clone_from(&self.durations);
         }
         Some(excess)
@@ -300,6 +304,15 @@ impl<const N: usize> WindowSolver<N> for SequentialSolver<N> {
                 excess = excess.min(self.restore().unwrap_or(f64::INFINITY));
             }
             trust *= 0.5;
+        }
+        for slower in SLOWER {
+            if self.best_duration.is_some() {
+                break;
+            }
+            for duration in &mut self.durations {
+                *duration *= 1.0 + slower;
+            }
+            excess = excess.min(self.restore().unwrap_or(f64::INFINITY));
         }
         let solves = self.solves;
         let Some(duration) = self.best_duration else {

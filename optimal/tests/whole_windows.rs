@@ -11,6 +11,7 @@ const ENOUGH: f64 = 1e-4;
 struct Program {
     points: Vec<[f64; 2]>,
     tolerance: f64,
+    feedrate: f64,
     acceleration: f64,
     jerk: f64,
     durations: Vec<f64>,
@@ -19,7 +20,26 @@ struct Program {
 
 impl Program {
     fn duration(&self) -> f64 {
-        let limits = Limits::<2>::uniform(1000.0, self.acceleration, self.jerk).unwrap();
+        self.with_window(|window| {
+            let mut motion = self.guess();
+            let solved = SequentialSolver::new()
+                .solve(window, &mut motion, 8)
+                .unwrap();
+            check(window, &motion);
+            solved.duration
+        })
+    }
+
+    fn guess(&self) -> WindowMotion<2> {
+        WindowMotion {
+            durations: self.durations.clone(),
+            ..WindowMotion::new()
+        }
+    }
+
+    fn with_window<T>(&self, then: impl FnOnce(&Window<'_, 2>) -> T) -> T {
+        let limits =
+            Limits::<2>::uniform(10.0 * self.feedrate, self.acceleration, self.jerk).unwrap();
         let segments: Vec<_> = self
             .points
             .windows(2)
@@ -29,27 +49,18 @@ impl Program {
                 end: Vector::from(ends[1]),
                 tolerance: self.tolerance,
                 corner_tolerance: Some(self.tolerance),
-                feedrate: 100.0,
+                feedrate: self.feedrate,
                 steps: (1..200)
                     .find(|steps| f64::from(*steps) * self.interval >= *duration)
                     .map_or(200, |steps: u16| usize::from(steps.max(4))),
             })
             .collect();
-        let window = Window {
+        then(&Window {
             start: EndState::rest(segments[0].start),
             end: EndState::rest(segments[segments.len() - 1].end),
             segments: &segments,
             limits: &limits,
-        };
-        let mut motion = WindowMotion {
-            durations: self.durations.clone(),
-            ..WindowMotion::new()
-        };
-        let solved = SequentialSolver::new()
-            .solve(&window, &mut motion, 8)
-            .unwrap();
-        check(&window, &motion);
-        solved.duration
+        })
     }
 }
 
@@ -102,6 +113,7 @@ fn right_angle(tolerance: f64) -> Program {
     Program {
         points: vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]],
         tolerance,
+        feedrate: 100.0,
         acceleration: 2500.0,
         jerk: 2e5,
         durations: vec![0.16, 0.16],
@@ -120,6 +132,7 @@ fn two_bends(tolerance: f64) -> Program {
             [bend, 10.0 + 0.5 * half],
         ],
         tolerance,
+        feedrate: 100.0,
         acceleration: 3000.0,
         jerk: 1e5,
         durations: vec![0.16, 0.03, 0.16],
@@ -141,4 +154,61 @@ fn two_bends_come_within_a_tenth_of_a_percent_of_the_optimum() {
         let duration = two_bends(tolerance).duration();
         assert!(duration < optimum * 1.001, "{tolerance}: {duration}");
     }
+}
+
+#[test]
+fn twice_the_size_at_twice_the_limits_takes_the_same_time() {
+    let once = two_bends(0.02);
+    let mut twice = two_bends(0.04);
+    twice.points = once
+        .points
+        .iter()
+        .map(|point| point.map(|x| 2.0 * x))
+        .collect();
+    twice.feedrate *= 2.0;
+    twice.acceleration *= 2.0;
+    twice.jerk *= 2.0;
+    let (once, twice) = (once.duration(), twice.duration());
+    assert!((once - twice).abs() < 1e-6 * once, "{once} {twice}");
+}
+
+#[test]
+fn twice_as_fast_takes_half_the_time() {
+    let slow = right_angle(0.05);
+    let mut fast = right_angle(0.05);
+    fast.feedrate *= 2.0;
+    fast.acceleration *= 4.0;
+    fast.jerk *= 8.0;
+    fast.interval *= 0.5;
+    for duration in &mut fast.durations {
+        *duration *= 0.5;
+    }
+    let (slow, fast) = (slow.duration(), fast.duration());
+    assert!((slow - 2.0 * fast).abs() < 1e-6 * slow, "{slow} {fast}");
+}
+
+#[test]
+fn a_solver_used_before_gives_the_same_bits_and_allocates_nothing() {
+    let program = two_bends(0.02);
+    let mut solver = SequentialSolver::new();
+    let mut first = program.guess();
+    program
+        .with_window(|window| solver.solve(window, &mut first, 8))
+        .unwrap();
+    let other = right_angle(0.05);
+    let mut second = other.guess();
+    other
+        .with_window(|window| solver.solve(window, &mut second, 8))
+        .unwrap();
+    let mut again = first.clone();
+    again.durations.clone_from(&program.durations);
+    again.states.clear();
+    again.jerks.clear();
+    program.with_window(|window| {
+        let counted = allocation_counter::measure(|| {
+            solver.solve(window, &mut again, 8).unwrap();
+        });
+        assert_eq!(counted.count_total, 0, "allocations");
+    });
+    assert_eq!(again, first, "the same window, solved twice");
 }
