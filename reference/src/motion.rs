@@ -166,3 +166,32 @@ pub(crate) fn best_change<const N: usize>(
     let promised: f64 = cost.map(|(cost, value)| -cost * value).sum();
     Some((changes, promised))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toolglide_kinematics::{Feedrate, Limits, Tolerance};
+
+    #[test]
+    fn a_little_less_than_the_least_time_is_not_possible() {
+        let points = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Vector::<2>::from);
+        let limits = Limits::uniform(500.0, 2500.0, 2e5).unwrap();
+        let (feedrate, tolerance) = (Feedrate::new(100.0).unwrap(), Tolerance::new(0.01).unwrap());
+        let course = Course::through(&points, limits, feedrate, tolerance).unwrap();
+        let grid = Grid::new(&[0.15; 2], &[40; 2]);
+        let least = least_time(&course, &grid, Kind::Sampled, None, 0.0).unwrap();
+        for (factor, possible) in [(0.999_f64, false), (1.001, true)] {
+            let formulation = Formulation {
+                course: &course,
+                grid: &least.grid,
+                kind: Kind::Sampled,
+                room: None,
+                margin: 0.0,
+            };
+            let mut stated = formulation.least_time();
+            let column = stated.columns.stretch;
+            stated.rows.zero([(column, 1.0)], -factor.powi(3));
+            assert_eq!(solve(&stated.rows).usable(), possible, "{factor}");
+        }
+    }
+}
