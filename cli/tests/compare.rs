@@ -21,7 +21,10 @@ fn a_small_program_by_every_method() {
     assert_eq!(run.code, 0, "{}", run.err);
     let mut all = json(&run.out);
     all["program"] = "two_corners_80um.ngc".into();
-    for method in all["methods"].as_array_mut().unwrap() {
+    let methods = all["methods"].as_array_mut().unwrap();
+    // What is found by iteration is held against the optimum in its own tests, not digit by digit.
+    methods.retain(|method| method["method"] != "optimal");
+    for method in methods {
         let time = method.as_object_mut().unwrap();
         let time = time.remove("planning_us_per_block").unwrap();
         assert!(time.as_f64().unwrap() > 0.0, "measured");

@@ -30,11 +30,11 @@ impl Effort {
         3 + usize::from(self.0)
     }
 
-    /// Interval as a share of the time in which the acceleration is built up: from an eighth down to a
-    /// fortieth. What the interval costs in cycle time goes with its square, what it saves in planning
+    /// Interval as a share of the time in which the acceleration is built up: from a sixth down to a
+    /// thirtieth. What the interval costs in cycle time goes with its square, what it saves in planning
     /// with itself.
     pub(crate) fn fineness(self) -> Fineness {
-        Fineness(0.12 * 0.82_f64.powi(i32::from(self.0) - 1))
+        Fineness(0.17 * 0.82_f64.powi(i32::from(self.0) - 1))
     }
 }
 
