@@ -50,9 +50,6 @@ pub(crate) const FEATURES: [(u8, &str); 5] = [
     (EXTRUDER, "extruder"),
 ];
 
-/// Codes of one letter, by ten times their number.
-const CODES: usize = 10_000;
-
 /// The words of one line.
 ///
 /// One block is reused for all lines, so that reading allocates nothing.
@@ -72,8 +69,8 @@ pub(crate) struct Block {
     pub(crate) rotary: bool,
     /// What was met beside codes.
     pub(crate) features: u8,
-    /// How often each code was met, by letter and ten times its number.
-    counts: Vec<u64>,
+    /// How often each code was met, for `G` and `M` by ten times its number, as far as one was met.
+    counts: [Vec<u64>; 2],
     pub(crate) motion: Option<Motion>,
     pub(crate) end_of_nurbs: bool,
     pub(crate) once: Option<Once>,
@@ -107,7 +104,7 @@ impl Block {
             assignments: Vec::new(),
             rotary: false,
             features: 0,
-            counts: vec![0; 2 * CODES],
+            counts: [Vec::new(), Vec::new()],
             motion: None,
             end_of_nurbs: false,
             once: None,
@@ -215,20 +212,25 @@ impl Block {
 
     /// Codes met in all lines so far, in order, and how often.
     pub(crate) fn codes(&self) -> impl Iterator<Item = (Code, u64)> + '_ {
-        let letters = [b'G', b'M'];
-        let count = move |letter: usize, tenths: u16| {
-            let count = self.counts[letter * CODES + usize::from(tenths)];
-            (count > 0).then(|| (Code::new(letters[letter], tenths), count))
-        };
-        (0..2).flat_map(move |letter| (0..10_000).filter_map(move |tenths| count(letter, tenths)))
+        [b'G', b'M']
+            .into_iter()
+            .zip(&self.counts)
+            .flat_map(|(letter, counts)| {
+                (0..)
+                    .zip(counts)
+                    .filter(|(_, count)| **count > 0)
+                    .map(move |(tenths, &count)| (Code::new(letter, tenths), count))
+            })
     }
 
+    /// Counts a code, `letter` of `G` and `M`.
     fn count(&mut self, letter: usize, code: Code) {
-        if let Some(tenths) = code.tenths()
-            && let Some(count) = self.counts.get_mut(letter * CODES + usize::from(tenths))
-        {
-            *count += 1;
+        let counts = &mut self.counts[letter];
+        let index = usize::from(code.tenths().unwrap_or(0));
+        if index >= counts.len() {
+            counts.resize(index + 1, 0);
         }
+        counts[index] += 1;
     }
 
     /// Whether the block sets nothing up but what the modal state takes.

@@ -156,6 +156,15 @@ impl<R: BufRead> Flow<R> {
         self.current.as_ref().map_or(0, |(_, index)| *index)
     }
 
+    /// The line being run, to be shown when the end of its block is missing.
+    fn here(&self) -> (Arc<Recording>, usize) {
+        self.current.clone().unwrap_or_else(|| {
+            let mut line = Recording::new(&self.file, self.lines.count());
+            line.push(self.lines.text());
+            (Arc::new(line), 0)
+        })
+    }
+
     /// Passes over lines until one of `ends` with the label of `control`, which is then the line
     /// being run.
     pub(crate) fn skip(
@@ -164,6 +173,7 @@ impl<R: BufRead> Flow<R> {
         ends: &[Keyword],
         closing: &'static str,
     ) -> Result<Keyword, Fault> {
+        let opening = self.here();
         loop {
             let more = match self.frames.last_mut() {
                 Some(frame) if frame.next < frame.recording.len() => {
@@ -179,6 +189,7 @@ impl<R: BufRead> Flow<R> {
                     .map_err(|reason| control.because(reason))?,
             };
             if !more {
+                self.current = Some(opening);
                 return Err(control.not_closed(closing));
             }
             if let Some(keyword) = glance(self.text(), &control.label)
@@ -207,6 +218,7 @@ impl<R: BufRead> Flow<R> {
         };
         let mut recording = Recording::new(&file, number + u64::from(!with_first));
         recording.outer = outer;
+        let opening = self.here();
         let mut fits = !with_first || recording.push(self.text());
         loop {
             let more = match self.frames.last_mut() {
@@ -222,6 +234,7 @@ impl<R: BufRead> Flow<R> {
                     .map_err(|reason| control.because(reason))?,
             };
             if !more {
+                self.current = Some(opening);
                 return Err(control.not_closed(end.name()));
             }
             fits = fits && recording.push(self.text());

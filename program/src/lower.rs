@@ -132,6 +132,7 @@ impl Lowering {
             remarks,
         )?;
         self.check_open_spline(block, motion)?;
+        self.check_compensated(block)?;
         let former = self.modal.motion;
         self.modal.take(block, &self.settings, remarks)?;
         if block.has(b'T') && self.tools_used.len() < MOST_TOOLS {

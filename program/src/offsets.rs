@@ -5,14 +5,11 @@
 //! Not here: who sets them.
 
 use crate::frame::Frame;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, SYSTEM};
 use toolglide_kinematics::Vector;
 
 /// Coordinate systems, `G54` to `G59.3`.
 pub(crate) const SYSTEMS: u8 = 9;
-
-/// Parameter with the number of the coordinate system.
-const SYSTEM: u32 = 5220;
 
 /// Parameter that is 1 while `G92` holds, and the first one of its offsets.
 const SHIFTED: u32 = 5210;

@@ -21,13 +21,8 @@ use toolglide_kinematics::{Feedrate, Move, Vector};
 const COMPENSATED: &str = "while cutter compensation is on (G40 ends it)";
 
 impl Lowering {
-    /// Tool length, cutter compensation and coordinate system, in the order of execution.
-    pub(crate) fn set_up(
-        &mut self,
-        block: &Block,
-        remarks: &mut Vec<Remark>,
-        moves: &mut VecDeque<Move<3>>,
-    ) -> Result<(), Fault> {
+    /// Refuses what cutter compensation cannot go through.
+    pub(crate) fn check_compensated(&self, block: &Block) -> Result<(), Fault> {
         if self.compensation.is_some() {
             let quiet = |group| Self::not_now(block, group, COMPENSATED);
             let groups = [Group::Plane, Group::ToolLength, Group::Coordinates];
@@ -42,6 +37,16 @@ impl Lowering {
                 return Err(fault);
             }
         }
+        Ok(())
+    }
+
+    /// Tool length, cutter compensation and coordinate system, in the order of execution.
+    pub(crate) fn set_up(
+        &mut self,
+        block: &Block,
+        remarks: &mut Vec<Remark>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
         if let Some(side) = block.side {
             self.compensate(block, side, remarks, moves)?;
         }

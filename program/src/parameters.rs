@@ -13,6 +13,9 @@ pub(crate) const LARGEST_PARAMETER: u32 = 5602;
 /// Parameters `#1` to this are local to a subroutine.
 pub(crate) const LOCAL_PARAMETERS: usize = 30;
 
+/// Number of the coordinate system in force: 1 unless it was set.
+pub(crate) const SYSTEM: u32 = 5220;
+
 /// Parameters from here to [`LAST_READ_ONLY`] tell where the machine is.
 const FIRST_READ_ONLY: u32 = 5400;
 const LAST_READ_ONLY: u32 = 5428;
@@ -34,6 +37,7 @@ pub(crate) trait Values {
 /// The parameters that a program has set.
 #[derive(Debug)]
 pub(crate) struct Parameters {
+    /// By their number, as far as one was set.
     numbered: Vec<f64>,
     global: BTreeMap<Box<str>, f64>,
     /// One for the main program and one for each subroutine that is running.
@@ -44,10 +48,8 @@ pub(crate) struct Parameters {
 
 impl Parameters {
     pub(crate) fn new() -> Self {
-        let mut numbered = vec![0.0; LARGEST_PARAMETER as usize + 1];
-        numbered[5220] = 1.0;
         Self {
-            numbered,
+            numbered: vec![0.0; LOCAL_PARAMETERS + 1],
             global: BTreeMap::new(),
             local: vec![BTreeMap::new()],
             saved: Vec::new(),
@@ -57,14 +59,24 @@ impl Parameters {
 
     /// A numbered parameter, 0 unless it was set.
     pub(crate) fn get(&self, number: u32) -> f64 {
-        self.numbered.get(number as usize).copied().unwrap_or(0.0)
+        let unset = f64::from(u8::from(number == SYSTEM));
+        self.numbered.get(number as usize).copied().unwrap_or(unset)
     }
 
     /// Sets a numbered parameter on behalf of the reader.
     pub(crate) fn put(&mut self, number: u32, value: f64) {
-        if let Some(place) = self.numbered.get_mut(number as usize) {
-            *place = value;
+        let index = number as usize;
+        if number > LARGEST_PARAMETER {
+            return;
         }
+        if index >= self.numbered.len() {
+            let before = self.get(SYSTEM);
+            self.numbered.resize(index + 1, 0.0);
+            if let Some(system) = self.numbered.get_mut(SYSTEM as usize) {
+                *system = before;
+            }
+        }
+        self.numbered[index] = value;
     }
 
     /// Sets a numbered parameter on behalf of the program.

@@ -7,31 +7,55 @@ use libfuzzer_sys::fuzz_target;
 use std::fmt::Write;
 
 const CODES: [&str; 74] = [
-    "G0", "G1", "G2", "G3", "G4", "G5", "G5.1", "G5.2", "G5.3", "G10 L2", "G10 L20", "G10 L1", "G10 L10",
-    "G17", "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G30.1", "G40", "G41", "G42", "G41.1",
-    "G42.1", "G43", "G43.1", "G43.2", "G49", "G53", "G54", "G55", "G59.3", "G61", "G64", "G73", "G74",
-    "G80", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G90", "G91", "G90.1", "G91.1",
-    "G92", "G92.1", "G92.2", "G92.3", "G93", "G94", "G97", "G98", "G99", "M0", "M2", "M3", "M6", "M66",
-    "M68", "M70", "M71", "M72", "M73", "M104", "G43.4",
+    "G0", "G1", "G2", "G3", "G4", "G5", "G5.1", "G5.2", "G5.3", "G10 L2", "G10 L20", "G10 L1",
+    "G10 L10", "G17", "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G30.1", "G40", "G41",
+    "G42", "G41.1", "G42.1", "G43", "G43.1", "G43.2", "G49", "G53", "G54", "G55", "G59.3", "G61",
+    "G64", "G73", "G74", "G80", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89",
+    "G90", "G91", "G90.1", "G91.1", "G92", "G92.1", "G92.2", "G92.3", "G93", "G94", "G97", "G98",
+    "G99", "M0", "M2", "M3", "M6", "M66", "M68", "M70", "M71", "M72", "M73", "M104", "G43.4",
 ];
 const LETTERS: [&str; 24] = [
-    "X", "Y", "Z", "I", "J", "K", "R", "P", "Q", "F", "L", "D", "H", "S", "T", "@", "^", "A", "B", "C", "E",
-    "N", "U", "$",
+    "X", "Y", "Z", "I", "J", "K", "R", "P", "Q", "F", "L", "D", "H", "S", "T", "@", "^", "A", "B",
+    "C", "E", "N", "U", "$",
 ];
 const FUNCTIONS: [&str; 14] = [
-    "ABS", "ACOS", "ASIN", "ATAN", "COS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN", "SQRT", "TAN", "EXISTS",
+    "ABS", "ACOS", "ASIN", "ATAN", "COS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN", "SQRT", "TAN",
+    "EXISTS",
 ];
 const OPERATORS: [&str; 15] = [
-    "+", "-", "*", "/", "**", " MOD ", " AND ", " OR ", " XOR ", " EQ ", " NE ", " GT ", " GE ", " LT ",
-    " LE ",
+    "+", "-", "*", "/", "**", " MOD ", " AND ", " OR ", " XOR ", " EQ ", " NE ", " GT ", " GE ",
+    " LT ", " LE ",
 ];
 const KEYWORDS: [&str; 15] = [
-    "sub", "endsub", "call", "return", "if", "elseif", "else", "endif", "while", "endwhile", "do", "repeat",
-    "endrepeat", "break", "continue",
+    "sub",
+    "endsub",
+    "call",
+    "return",
+    "if",
+    "elseif",
+    "else",
+    "endif",
+    "while",
+    "endwhile",
+    "do",
+    "repeat",
+    "endrepeat",
+    "break",
+    "continue",
 ];
 const STATEMENTS: [&str; 12] = [
-    "GOTO/", "FROM/", "GODLTA/", "CIRCLE/", "FEDRAT/", "RAPID", "UNITS/MM", "UNITS/INCHES", "LOADTL/",
-    "DELAY/", "END", "GOTO/1,2,3,0,0,1,",
+    "GOTO/",
+    "FROM/",
+    "GODLTA/",
+    "CIRCLE/",
+    "FEDRAT/",
+    "RAPID",
+    "UNITS/MM",
+    "UNITS/INCHES",
+    "LOADTL/",
+    "DELAY/",
+    "END",
+    "GOTO/1,2,3,0,0,1,",
 ];
 
 #[derive(Arbitrary, Debug)]
@@ -80,7 +104,12 @@ impl Value {
             Self::Any(value) => write!(out, "{value}"),
             Self::Parameter(number) => write!(out, "#{number}"),
             Self::Stored(number) => write!(out, "#{}", 5161 + number % 300),
-            Self::Named(name) => write!(out, "#<{}n{}>", if name & 8 > 0 { "_" } else { "" }, name % 4),
+            Self::Named(name) => write!(
+                out,
+                "#<{}n{}>",
+                if name & 8 > 0 { "_" } else { "" },
+                name % 4
+            ),
             Self::Expression(left, operator, right) => {
                 out.push('[');
                 left.write(out, depth + 1);
@@ -92,7 +121,11 @@ impl Value {
                 let name = pick(&FUNCTIONS, *name);
                 let _ = write!(out, "{name}[");
                 value.write(out, depth + 1);
-                if name == "ATAN" { write!(out, "]/[2]") } else { write!(out, "]") }
+                if name == "ATAN" {
+                    write!(out, "]/[2]")
+                } else {
+                    write!(out, "]")
+                }
             }
         };
     }

@@ -1,0 +1,296 @@
+//! Parameters, expressions, and O words.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod common;
+
+use common::{FILE, assert_close, assert_ends, ends, read, refusal, refusal_with, settings};
+use toolglide_program::{ArithmeticError, FlowError, Program, Reason};
+
+/// X of each move.
+fn x(text: &str) -> Vec<f64> {
+    ends(text).iter().map(|end| end[0]).collect()
+}
+
+fn assert_x(text: &str, expected: &[f64]) {
+    assert_close(&x(text), expected, text);
+}
+
+#[test]
+fn operators_bind_as_the_language_says() {
+    for (expression, value) in [
+        ("1+2*3", 7.0),
+        ("2**3**2", 64.0),
+        ("-2**2", 4.0),
+        ("[1+2]*3", 9.0),
+        ("-7 mod 3", 2.0),
+        ("1 or 0 and 0", 0.0),
+        ("1 gt 0+5", 0.0),
+        ("1.00005 eq 1", 1.0),
+        ("1.001 ne 1", 1.0),
+        ("2 xor 0", 1.0),
+        ("7-2-1", 4.0),
+        ("-[2+1]", -3.0),
+    ] {
+        assert_x(&format!("G0 X[{expression}]"), &[value]);
+    }
+}
+
+#[test]
+fn functions_take_degrees_and_round_away_from_zero() {
+    for (expression, value) in [
+        ("sin[30]", 0.5),
+        ("acos[0]", 90.0),
+        ("atan[1]/[-1]", 135.0),
+        ("fix[-2.5]", -3.0),
+        ("fup[-2.5]", -2.0),
+        ("round[-2.5]", -3.0),
+        ("abs[-1]+sqrt[16]", 5.0),
+        ("exp[ln[3]]", 3.0),
+        ("exists[#<a>]", 0.0),
+        ("exists[#1]", 1.0),
+    ] {
+        assert_x(&format!("G0 X[{expression}]"), &[value]);
+    }
+}
+
+#[test]
+fn parameters_change_once_their_line_is_read() {
+    assert_x("#1=5 #2=[#1+1]\nG0 X#1 #1=9\nX#1 Y#2", &[5.0, 9.0]);
+    assert_close(
+        &[ends("#1=5 #2=[#1+1]\nG0 X1 Y#2")[0][1]],
+        &[1.0],
+        "the old value",
+    );
+    assert_x("#1=2 #2=7\nG0 X##1", &[7.0]);
+    assert_x("#<Inner Radius>=3\nG0 X#<innerradius>", &[3.0]);
+    assert_x("G20 G0 X2\nX[#5420+#<_x>+1]", &[50.8, 127.0]);
+    assert_x("G[0+1] X1 F[60*10]\nG#31 X2", &[1.0, 2.0]);
+}
+
+#[test]
+fn conditions_take_the_first_branch_that_holds() {
+    let text = |value: u8| {
+        format!(
+            "#1={value}\no1 if [#1 eq 1]\nG0 X10\no1 elseif [#1 eq 2]\nG0 X20\no1 else\no2 if [#1 gt 5]\n\
+             G0 X30\no2 endif\nG0 X40\no1 endif\nG0 X50"
+        )
+    };
+    assert_x(&text(1), &[10.0, 50.0]);
+    assert_x(&text(2), &[20.0, 50.0]);
+    assert_x(&text(3), &[40.0, 50.0]);
+    assert_x(&text(6), &[30.0, 40.0, 50.0]);
+}
+
+#[test]
+fn loops_run_break_and_continue() {
+    assert_x(
+        "#1=0\no1 while [#1 lt 3]\n#1=[#1+1]\nG0 X#1\no1 endwhile",
+        &[1.0, 2.0, 3.0],
+    );
+    assert_x(
+        "#1=0\no1 do\n#1=[#1+1]\nG0 X#1\no1 while [#1 lt 2]\nX9",
+        &[1.0, 2.0, 9.0],
+    );
+    assert_x(
+        "G91 G0\no1 repeat [3]\nX1\no1 endrepeat\no2 repeat [0]\nX5\no2 endrepeat",
+        &[1.0, 2.0, 3.0],
+    );
+    let text = "#1=0\no1 while [1]\n#1=[#1+1]\no2 if [#1 eq 2]\no1 continue\no2 endif\no3 if [#1 gt 3]\n\
+                o1 break\no3 endif\nG0 X#1\no1 endwhile\nX8";
+    assert_x(text, &[1.0, 3.0, 8.0]);
+    let text = "#1=0\no1 repeat [3]\n#1=[#1+1]\no2 if [#1 eq 2]\no1 continue\no2 endif\nG0 X#1\no1 endrepeat";
+    assert_x(text, &[1.0, 3.0]);
+    let text = "#1=0\no1 do\n#1=[#1+1]\no2 if [#1 eq 2]\no1 continue\no2 endif\nG0 X#1\no1 while [#1 lt 3]";
+    assert_x(text, &[1.0, 3.0]);
+}
+
+#[test]
+fn loops_within_loops_repeat_all_of_it() {
+    let text = "G91 G0\no1 repeat [2]\no2 repeat [3]\nX1\no2 endrepeat\nX10\no1 endrepeat";
+    assert_x(text, &[1.0, 2.0, 3.0, 13.0, 14.0, 15.0, 16.0, 26.0]);
+}
+
+#[test]
+fn subroutines_have_arguments_locals_and_values() {
+    let text = "o<step> sub\n#<a>=[#1*2]\nG0 X#<a>\no<step> return [#<a>+1]\nG0 X99\no<step> endsub\n\
+                #1=7\no<step> call [4]\nG0 X#<_value>\nX#1";
+    assert_x(text, &[8.0, 9.0, 7.0]);
+    let text = "o1 sub\no2 if [#1 gt 0]\nG0 X#1\no1 call [#1-1]\no2 endif\no1 endsub\no1 call [3]";
+    assert_x(text, &[3.0, 2.0, 1.0]);
+    assert_x("o[50+50] sub\nG0 X1\no100 endsub\n#5=100\no#5 call", &[1.0]);
+}
+
+#[test]
+fn moves_of_a_loop_know_their_lines() {
+    let moves = read("G91 G0\no1 repeat [2]\nX1\no1 endrepeat\nX2");
+    let lines: Vec<u32> = moves.iter().map(toolglide_kinematics::Move::line).collect();
+    assert_eq!(lines, [3, 3, 5], "lines");
+}
+
+#[test]
+fn subroutines_of_other_files_are_found_by_their_name() {
+    let file = b"(pocket)\r\no<pocket> sub\r\nG0 X#1\r\nG0 X[\r\no<pocket> endsub\r\n".to_vec();
+    let text = "G0 X1\n\no<pocket> call [5]\n";
+    let mut program = Program::new(text.as_bytes(), FILE, settings())
+        .with_subroutines(move |name| Ok((name == "pocket").then(|| file.clone())));
+    let lines: Vec<u32> = program
+        .by_ref()
+        .take(2)
+        .map(|step| step.unwrap().line())
+        .collect();
+    assert_eq!(lines, [1, 3], "the line of the call");
+    let error = program.next().unwrap().unwrap_err();
+    assert_eq!(
+        (error.file(), error.line(), error.column()),
+        ("pocket.ngc", 4, 6),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_state_is_saved_and_restored() {
+    assert_x("G91 M70\nG90 G0 X5\nM72\nG0 X1", &[5.0, 6.0]);
+    assert_x(
+        "G90\no1 sub\nM73\nG91 G0 X1\no1 endsub\nG0 X5\no1 call\nX2",
+        &[5.0, 6.0, 2.0],
+    );
+}
+
+#[test]
+fn programs_without_an_end_end_with_a_reason() {
+    let mut few = settings();
+    few.steps = 1000;
+    for text in [
+        "o1 while [1]\no1 endwhile",
+        "o1 do\no1 while [1]",
+        "o1 repeat [1000000000]\n(nothing)\no1 endrepeat",
+    ] {
+        let (.., reason) = refusal_with(text, few);
+        let expected = Reason::Flow(FlowError::TooManySteps { bound: 1000 });
+        assert_eq!(reason, expected, "{text:?}");
+    }
+    let (line, column, _, reason) = refusal("o1 sub\no1 call\no1 endsub\no1 call");
+    assert_eq!((line, column), (2, 1), "{reason}");
+    assert!(
+        matches!(reason, Reason::Flow(FlowError::TooDeep { .. })),
+        "{reason:?}"
+    );
+}
+
+#[test]
+fn wrong_o_words_are_refused_at_their_place() {
+    for (text, expected) in [
+        (
+            "o1 jump",
+            "1:4: not known after a label: write SUB, ENDSUB, CALL, RETURN, IF, ELSEIF, ELSE, ENDIF, WHILE, ENDWHILE, DO, REPEAT, ENDREPEAT, BREAK or CONTINUE",
+        ),
+        (
+            "o if [1]",
+            "1:1: O needs a number, or a name in angle brackets, after it",
+        ),
+        ("o1 endif", "1:1: ENDIF of O1 without its IF"),
+        (
+            "o1 while [1]\nG0 X1",
+            "1:1: WHILE of O1 is not closed: ENDWHILE is missing",
+        ),
+        (
+            "o1 sub\nG0 X1",
+            "1:1: SUB of O1 is not closed: ENDSUB is missing",
+        ),
+        (
+            "o1 if [0]\no2 endif",
+            "1:1: IF of O1 is not closed: ENDIF is missing",
+        ),
+        (
+            "o<no> call",
+            "1:1: there is no subroutine O<no>: neither above this line nor in a file of that name",
+        ),
+        ("o1 if", "1:1: IF needs an expression in brackets after it"),
+        ("o1 return", "1:1: RETURN of O1 without its SUB"),
+        (
+            "o1 repeat [-1]\no1 endrepeat",
+            "1:1: repetitions are -1, but must be from 0 to 1000000000000000",
+        ),
+        (
+            "o1 break",
+            "1:1: BREAK of O1 without its WHILE, DO or REPEAT",
+        ),
+        (
+            "G0 X1 o1 call",
+            "1:7: O words behind other words are not supported",
+        ),
+    ] {
+        let (line, column, _, reason) = refusal(text);
+        assert_eq!(format!("{line}:{column}: {reason}"), expected, "{text:?}");
+    }
+}
+
+#[test]
+fn wrong_expressions_are_refused_at_their_place() {
+    for (text, place, expected) in [
+        ("G0 X[1+", (1, 8), ArithmeticError::ValueMissing),
+        ("G0 X[1 2 foo 3]", (1, 10), ArithmeticError::UnknownOperator),
+        ("G0 X[1", (1, 5), ArithmeticError::NotClosed),
+        ("G0 X[foo[1]]", (1, 6), ArithmeticError::UnknownFunction),
+        (
+            "G0 X#0",
+            (1, 5),
+            ArithmeticError::NoSuchParameter {
+                value: 0.0,
+                most: 5602,
+            },
+        ),
+        (
+            "#5420=1",
+            (1, 1),
+            ArithmeticError::ReadOnly { number: 5420 },
+        ),
+        (
+            "#<_x>=1",
+            (1, 1),
+            ArithmeticError::Predefined { name: "_x".into() },
+        ),
+        ("G0 X#<a", (1, 6), ArithmeticError::BadName { most: 255 }),
+        (
+            "G0 X[1/0]",
+            (1, 7),
+            ArithmeticError::Undefined {
+                function: "division by zero",
+                value: 1.0,
+            },
+        ),
+        (
+            "G0 X[ln[0]]",
+            (1, 6),
+            ArithmeticError::Undefined {
+                function: "LN",
+                value: 0.0,
+            },
+        ),
+        (
+            "G0 X[exp[1000]]",
+            (1, 6),
+            ArithmeticError::Overflow { function: "EXP" },
+        ),
+        ("#1 5", (1, 1), ArithmeticError::NotAssigned),
+    ] {
+        let (line, column, _, reason) = refusal(text);
+        assert_eq!(
+            ((line, column), reason),
+            (place, Reason::Arithmetic(expected)),
+            "{text:?}"
+        );
+    }
+    let deep = format!("G0 X{}1{}", "[".repeat(500), "]".repeat(500));
+    let (.., reason) = refusal(&deep);
+    assert!(
+        matches!(reason, Reason::Arithmetic(ArithmeticError::TooDeep { .. })),
+        "{reason:?}"
+    );
+}
+
+#[test]
+fn a_program_number_is_no_o_word() {
+    assert_ends("O1234 (PART)\nG0 X1", &[[1.0, 0.0, 0.0]]);
+}
