@@ -235,7 +235,15 @@ impl Lowering {
         let rapid = Feedrate::RAPID;
         let feed = hole.feedrate;
         let (bottom, retract) = (hole.bottom, hole.retract);
-        self.go_aside(hole, center, rapid, moves)?;
+        // Returning to where the cycles began means going across there too.
+        let mut above = center;
+        let height = self.program[hole.depth];
+        above[hole.depth] = if self.modal.return_to_start {
+            hole.clear
+        } else {
+            height
+        };
+        self.go_where_needed(above, rapid, hole.span, moves)?;
         self.go_deep(hole, retract, rapid, moves)?;
         match motion {
             Motion::Cycle(73 | 83) => {

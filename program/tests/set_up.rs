@@ -35,7 +35,7 @@ fn refused(text: &str) -> (u64, u32, Reason) {
     let error = Program::new(text.as_bytes(), FILE, settings())
         .with_tools(table())
         .find_map(Result::err)
-        .expect(text);
+        .unwrap_or_else(|| panic!("{text:?} is read"));
     (error.line(), error.column(), error.reason().clone())
 }
 
