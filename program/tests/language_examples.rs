@@ -24,10 +24,8 @@ fn moves(file: &str) -> usize {
     let mut program = Program::new(text.as_bytes(), file, settings())
         .with_tools(tools)
         .with_subroutines(|name| std::fs::read(folder().join(format!("{name}.ngc"))).map(Some));
-    let count = program
-        .by_ref()
-        .map(|step| step.unwrap_or_else(|error| panic!("{error}")))
-        .count();
+    let read: Result<Vec<_>, _> = program.by_ref().collect();
+    let count = read.unwrap_or_else(|error| panic!("{error}")).len();
     assert!(
         program.warnings().is_empty(),
         "{file}: {:?}",
@@ -58,9 +56,8 @@ fn programs_of_rotary_axes_are_read_as_poses() {
         let path = PathBuf::from(file);
         let language = Language::of(&path, text.as_bytes());
         let poses = Poses::new(text.as_bytes(), file, settings(), language);
-        let count = poses
-            .map(|step| step.unwrap_or_else(|error| panic!("{error}")))
-            .count();
+        let read: Result<Vec<_>, _> = poses.collect();
+        let count = read.unwrap_or_else(|error| panic!("{error}")).len();
         assert_eq!(count, expected, "{file}");
     }
 }
