@@ -7,48 +7,38 @@
 //!
 //! # Language
 //!
-//! A line is a block of words: a letter and a number. Upper and lower case are the same; blanks
-//! may stand anywhere, even inside a number. `( )` encloses a comment, `;` begins one that lasts
-//! to the end of the line. A line that begins with `/` is skipped (block delete is on). A `%`
-//! alone on its line opens a program; any later one ends it, as do `M2`, `M30` and the end of the
-//! file. Lines end in LF or CR LF; a byte order mark is skipped.
+//! A line is a block of words: a letter and a value. Upper and lower case are the same; blanks may
+//! stand anywhere, even inside a number. `( )` encloses a comment, `;` begins one that lasts to the
+//! end of the line. A line that begins with `/` is skipped (block delete is on). A `%` alone on its
+//! line opens a program; any later one ends it, as do `M2`, `M30` and the end of the file. Lines end
+//! in LF or CR LF; a byte order mark is skipped.
 //!
-//! | words | meaning |
-//! | --- | --- |
-//! | `G0` | rapid: [`Feedrate::RAPID`](toolglide_kinematics::Feedrate::RAPID) |
-//! | `G1` | straight move at the feedrate |
-//! | `G2` `G3` | arc clockwise, counter-clockwise in the plane, seen from its positive normal; a helix when the third axis moves; a full circle when the end is the start |
-//! | `I` `J` `K` | centre of the arc, from its start (`G91.1`) or absolute (`G90.1`, both needed) |
-//! | `R` | radius of the arc instead of its centre; negative takes the longer way round |
-//! | `P` with `G2` `G3` | number of turns begun, from 1 |
-//! | `G4 P` | standing still for P seconds |
-//! | `G17` `G18` `G19` | plane XY, ZX, YZ |
-//! | `G20` `G21` | inch, mm: for `X Y Z I J K R F` and the `P` of `G64` |
-//! | `G40` `G49` `G54` | accepted: there are no offsets |
-//! | `G61` `G61.1` | the motion comes to rest at the end of every move |
-//! | `G64` | corners are rounded within the tolerance: `P`, or that of the [`Settings`] without one. `Q` is accepted; merging short moves never leaves `P`, so `Q` grants nothing more |
-//! | `G80` | no motion mode: axis words need a motion word from here. Of no effect beside another motion word |
-//! | `G90` `G91` | coordinates absolute, incremental |
-//! | `G93` `G94` | `F` is one over the minutes of the move, needed by every `G1` `G2` `G3` and ignored beside others; `F` is length units a minute. From one to the other `F` is forgotten |
-//! | `F` | feedrate. By the order of execution it is read before `G20` or `G21` of the same block |
-//! | `S` `T` | spindle speed and tool: carried, of no effect on the motion |
-//! | `M0` `M1` `M60` | the motion comes to rest: a dwell of no duration |
-//! | `M2` `M30` | end of the program |
-//! | `M3` `M4` `M5` `M6` `M7` `M8` `M9` `M48` `M49` | accepted, of no effect on the motion |
-//! | `N` | line number, of no effect |
+//! Read are straight moves, arcs and helices, splines, canned cycles, cutter compensation, tool
+//! lengths, coordinate systems and their rotation, polar coordinates, parameters, expressions, and O
+//! words with their loops and subroutines. `docs/programs.md` of the project lists every word and
+//! what becomes of it. LinuxCNC is the reference for what a word means.
 //!
 //! A line of axis words alone repeats the last motion mode; at the beginning there is none. The
-//! program begins in `G17 G21 G90 G91.1 G94 G64` with no feedrate.
+//! program begins in `G17 G21 G40 G49 G54 G64 G80 G90 G91.1 G94 G99` with no feedrate. Within a
+//! block the order is that of RS274/NGC: feed mode, `F`, `S`, `T`, tool change, spindle, coolant,
+//! overrides, dwell, plane, units, cutter compensation, tool length, coordinate system, path
+//! control, distance mode, offsets, motion, stop.
 //!
-//! Within a block the order is that of RS274/NGC: feed mode, `F`, `S`, `T`, tool change, spindle,
-//! coolant, overrides, dwell, plane, units, path control, distance mode, motion, stop.
+//! Moves are in the coordinates of the machine: offsets and tool lengths are added. Parameters hold
+//! offsets in mm.
+//!
+//! # Tool poses
+//!
+//! [`Poses`] reads programs of machines with rotary axes, cutter location files, and a first cut of
+//! the language of Sinumerik 840D; [`Language`] tells them apart.
 //!
 //! # Refused
 //!
-//! Parameters, expressions, `O` words, canned cycles, tool length and cutter compensation, offsets
-//! of coordinates, machine coordinates, splines, and axes other than X, Y and Z are refused with
-//! their name. With [`Settings::lenient`], words that certainly do not move an axis (most unknown
-//! `M` codes, `G96` to `G99`, `E`, `D`, `H`, `L`) become [`Warning`]s instead.
+//! What cannot be planned as motion is refused with its name: probing, threads, feed for each turn,
+//! splines with knots of their own, axes that the machine has not. With [`Settings::lenient`], words
+//! that certainly do not move an axis (most unknown `M` codes, `G96`, `D`, `H`, `L`) become
+//! [`Warning`]s instead. Loops and subroutines have a bound on their depth and on the lines they run
+//! ([`Settings::steps`]), and a block has one on its moves, so that reading ends.
 //!
 //! # Examples
 //! ```
