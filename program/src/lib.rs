@@ -56,6 +56,7 @@
 mod arcs;
 mod arithmetic_error;
 mod axis_words;
+mod bezier;
 mod block;
 mod branch;
 mod chords;
@@ -93,6 +94,7 @@ mod splines;
 mod state;
 mod statement;
 mod statement_error;
+mod tool_codes;
 mod tools;
 mod units;
 mod uses;

@@ -1,24 +1,22 @@
-//! Codes that set the machine up: coordinate systems, offsets, tool length, stored points.
+//! Codes that set the machine up: coordinate systems, offsets, stored points.
 //!
-//! Source: `G10`, `G28` to `G30.1`, `G43` to `G49`, `G53` to `G59.3` and `G92` to `G92.3` of RS274/NGC
+//! Source: `G10`, `G28` to `G30.1`, `G53` to `G59.3` and `G92` to `G92.3` of RS274/NGC
 //! and LinuxCNC. Parameters hold offsets in mm. Not here: what offsets do to a point.
 
 use crate::block::{AXES, Block};
-use crate::codes::{Code, Group, Motion, Once, Side, ToolLength};
-use crate::compensation::Compensation;
-use crate::error::{Fault, Notice, Remark};
+use crate::codes::{Code, Group, Motion, Once, ToolLength};
+use crate::error::{Fault, Remark};
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
-use crate::modal::{not_negative, whole};
+use crate::modal::whole;
 use crate::offsets::{SYSTEMS, axis_number, origin, rotation, set_system, system};
 use crate::place::Span;
 use crate::reason::Reason;
-use crate::tools::{LARGEST_TOOL, Tool};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Feedrate, Move, Vector};
 
 /// Why most set-up has to wait.
-const COMPENSATED: &str = "while cutter compensation is on (G40 ends it)";
+pub(crate) const COMPENSATED: &str = "while cutter compensation is on (G40 ends it)";
 
 impl Lowering {
     /// Refuses what cutter compensation cannot go through.
@@ -172,34 +170,6 @@ impl Lowering {
         }
     }
 
-    fn set_tool(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
-        let Some(number) = whole(block, b'P', "tool number", 0, LARGEST_TOOL)? else {
-            return Err(missing(block, 'P'));
-        };
-        let mut tool = self.tools.get(number).unwrap_or(Tool {
-            offset: Vector::zeros(),
-            diameter: 0.0,
-        });
-        if let Some(radius) = not_negative(block, b'R', "radius of the tool")? {
-            tool.diameter = 2.0 * self.modal.units.length(radius);
-        }
-        // Where the reference point of the machine is in the program.
-        let mut without = self.offsets;
-        without.set_tool(Vector::zeros());
-        let here = without.in_program(self.position);
-        for (axis, letter) in AXES.into_iter().enumerate() {
-            if let Some(length) = self.length(block, letter)? {
-                tool.offset[axis] = if by_position {
-                    here[axis] - length
-                } else {
-                    length
-                };
-            }
-        }
-        self.tools.set(number, tool);
-        Ok(())
-    }
-
     fn set_system_data(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
         let Some(number) = whole(block, b'P', "coordinate system", 0, u32::from(SYSTEMS))? else {
             return Err(missing(block, 'P'));
@@ -245,136 +215,20 @@ impl Lowering {
         self.offsets.take_system(&self.parameters);
         Ok(())
     }
-
-    fn tool_length(
-        &mut self,
-        block: &Block,
-        kind: ToolLength,
-        remarks: &mut Vec<Remark>,
-    ) -> Result<(), Fault> {
-        let given = |state: &Self| -> Result<Vector<3>, Fault> {
-            let mut offset = Vector::zeros();
-            for (axis, letter) in AXES.into_iter().enumerate() {
-                offset[axis] = state.length(block, letter)?.unwrap_or(0.0);
-            }
-            Ok(offset)
-        };
-        let tool = match kind {
-            ToolLength::Off => Vector::zeros(),
-            ToolLength::Table => {
-                self.tool_of(block, b'H', Group::ToolLength, remarks)?
-                    .offset
-            }
-            ToolLength::Given => {
-                if block.first_of(&AXES).is_none() {
-                    return Err(companion(block, Group::ToolLength, "an axis word"));
-                }
-                let mut offset = self.offsets.tool();
-                for (axis, letter) in AXES.into_iter().enumerate() {
-                    offset[axis] = self.length(block, letter)?.unwrap_or(offset[axis]);
-                }
-                offset
-            }
-            ToolLength::Added if block.has(b'H') => {
-                let more = self
-                    .tool_of(block, b'H', Group::ToolLength, remarks)?
-                    .offset;
-                self.offsets.tool() + more
-            }
-            ToolLength::Added => self.offsets.tool() + given(self)?,
-        };
-        self.offsets.set_tool(tool);
-        self.program = self.offsets.in_program(self.position);
-        Ok(())
-    }
-
-    /// The tool that a word names, or the one in the spindle.
-    fn tool_of(
-        &self,
-        block: &Block,
-        letter: u8,
-        group: Group,
-        remarks: &mut Vec<Remark>,
-    ) -> Result<Tool, Fault> {
-        let none = Tool {
-            offset: Vector::zeros(),
-            diameter: 0.0,
-        };
-        let written = whole(block, letter, "tool number", 0, LARGEST_TOOL)?;
-        let number = written.unwrap_or(self.loaded);
-        let span = match (written, block.taker(group)) {
-            (None, Some((_, span))) => span,
-            _ => block.span(letter),
-        };
-        if number == 0 {
-            return Ok(none);
-        }
-        if let Some(tool) = self.tools.get(number) {
-            return Ok(tool);
-        }
-        if self.tools.is_empty() {
-            remarks.push((span, Notice::NoToolTable { tool: number }));
-            return Ok(none);
-        }
-        let tool = number;
-        Err(Fault::new(span, MachiningError::NoSuchTool { tool }.into()))
-    }
-
-    fn compensate(
-        &mut self,
-        block: &Block,
-        side: Side,
-        remarks: &mut Vec<Remark>,
-        moves: &mut VecDeque<Move<3>>,
-    ) -> Result<(), Fault> {
-        let group = Group::CutterCompensation;
-        let left = match side {
-            Side::Off => {
-                if let Some(compensation) = &mut self.compensation {
-                    compensation.end(moves);
-                    if compensation.is_over() {
-                        self.compensation = None;
-                    }
-                }
-                return Ok(());
-            }
-            Side::Left | Side::LeftOf => true,
-            Side::Right | Side::RightOf => false,
-        };
-        if self.compensation.as_ref().is_some_and(|on| !on.is_ending()) {
-            return Self::not_now(block, group, COMPENSATED).map_or(Ok(()), Err);
-        }
-        let diameter = match side {
-            Side::LeftOf | Side::RightOf => match self.length(block, b'D')? {
-                Some(diameter) => diameter,
-                None => return Err(missing_of(block, group, 'D')),
-            },
-            _ => self.tool_of(block, b'D', group, remarks)?.diameter,
-        };
-        let radius = 0.5 * diameter.abs();
-        // A tool of negative diameter goes on the other side.
-        let left = left == (diameter >= 0.0);
-        let at = self
-            .compensation
-            .take()
-            .map_or(self.position, |on| on.position());
-        self.compensation = Some(Compensation::new(self.modal.plane, radius, left, at));
-        Ok(())
-    }
 }
 
-fn companion(block: &Block, group: Group, companion: &'static str) -> Fault {
+pub(crate) fn companion(block: &Block, group: Group, companion: &'static str) -> Fault {
     let (code, span) = block
         .taker(group)
         .unwrap_or((Motion::Off.code(), Span::default()));
     Fault::new(span, MachiningError::Companion { code, companion }.into())
 }
 
-fn missing(block: &Block, letter: char) -> Fault {
+pub(crate) fn missing(block: &Block, letter: char) -> Fault {
     missing_of(block, Group::NonModal, letter)
 }
 
-fn missing_of(block: &Block, group: Group, letter: char) -> Fault {
+pub(crate) fn missing_of(block: &Block, group: Group, letter: char) -> Fault {
     let (code, span) = block
         .taker(group)
         .unwrap_or((Motion::Off.code(), Span::default()));

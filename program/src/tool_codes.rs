@@ -1,0 +1,164 @@
+//! Codes of tools: their table, their length, and on which side of the path they go.
+//!
+//! Source: `G10 L1`, `G40` to `G43.2` and `G49` of LinuxCNC. Not here: what compensation does.
+
+use crate::block::{AXES, Block};
+use crate::codes::{Group, Side, ToolLength};
+use crate::compensation::Compensation;
+use crate::error::{Fault, Notice, Remark};
+use crate::lower::Lowering;
+use crate::machining_error::MachiningError;
+use crate::modal::{not_negative, whole};
+use crate::once::{COMPENSATED, companion, missing, missing_of};
+use crate::tools::{LARGEST_TOOL, Tool};
+use std::collections::VecDeque;
+use toolglide_kinematics::{Move, Vector};
+
+impl Lowering {
+    /// `G10 L1` and `L10`.
+    pub(crate) fn set_tool(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
+        let Some(number) = whole(block, b'P', "tool number", 0, LARGEST_TOOL)? else {
+            return Err(missing(block, 'P'));
+        };
+        let mut tool = self.tools.get(number).unwrap_or(Tool {
+            offset: Vector::zeros(),
+            diameter: 0.0,
+        });
+        if let Some(radius) = not_negative(block, b'R', "radius of the tool")? {
+            tool.diameter = 2.0 * self.modal.units.length(radius);
+        }
+        // Where the reference point of the machine is in the program.
+        let mut without = self.offsets;
+        without.set_tool(Vector::zeros());
+        let here = without.in_program(self.position);
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            if let Some(length) = self.length(block, letter)? {
+                tool.offset[axis] = if by_position {
+                    here[axis] - length
+                } else {
+                    length
+                };
+            }
+        }
+        self.tools.set(number, tool);
+        Ok(())
+    }
+
+    /// `G43` to `G49`.
+    pub(crate) fn tool_length(
+        &mut self,
+        block: &Block,
+        kind: ToolLength,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
+        let given = |state: &Self| -> Result<Vector<3>, Fault> {
+            let mut offset = Vector::zeros();
+            for (axis, letter) in AXES.into_iter().enumerate() {
+                offset[axis] = state.length(block, letter)?.unwrap_or(0.0);
+            }
+            Ok(offset)
+        };
+        let tool = match kind {
+            ToolLength::Off => Vector::zeros(),
+            ToolLength::Table => {
+                self.tool_of(block, b'H', Group::ToolLength, remarks)?
+                    .offset
+            }
+            ToolLength::Given => {
+                if block.first_of(&AXES).is_none() {
+                    return Err(companion(block, Group::ToolLength, "an axis word"));
+                }
+                let mut offset = self.offsets.tool();
+                for (axis, letter) in AXES.into_iter().enumerate() {
+                    offset[axis] = self.length(block, letter)?.unwrap_or(offset[axis]);
+                }
+                offset
+            }
+            ToolLength::Added if block.has(b'H') => {
+                let more = self
+                    .tool_of(block, b'H', Group::ToolLength, remarks)?
+                    .offset;
+                self.offsets.tool() + more
+            }
+            ToolLength::Added => self.offsets.tool() + given(self)?,
+        };
+        self.offsets.set_tool(tool);
+        self.program = self.offsets.in_program(self.position);
+        Ok(())
+    }
+
+    /// The tool that a word names, or the one in the spindle.
+    fn tool_of(
+        &self,
+        block: &Block,
+        letter: u8,
+        group: Group,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Tool, Fault> {
+        let none = Tool {
+            offset: Vector::zeros(),
+            diameter: 0.0,
+        };
+        let written = whole(block, letter, "tool number", 0, LARGEST_TOOL)?;
+        let number = written.unwrap_or(self.loaded);
+        let span = match (written, block.taker(group)) {
+            (None, Some((_, span))) => span,
+            _ => block.span(letter),
+        };
+        if number == 0 {
+            return Ok(none);
+        }
+        if let Some(tool) = self.tools.get(number) {
+            return Ok(tool);
+        }
+        if self.tools.is_empty() {
+            remarks.push((span, Notice::NoToolTable { tool: number }));
+            return Ok(none);
+        }
+        let tool = number;
+        Err(Fault::new(span, MachiningError::NoSuchTool { tool }.into()))
+    }
+
+    /// `G40` to `G42.1`.
+    pub(crate) fn compensate(
+        &mut self,
+        block: &Block,
+        side: Side,
+        remarks: &mut Vec<Remark>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let group = Group::CutterCompensation;
+        let left = match side {
+            Side::Off => {
+                if let Some(compensation) = &mut self.compensation {
+                    compensation.end(moves);
+                    if compensation.is_over() {
+                        self.compensation = None;
+                    }
+                }
+                return Ok(());
+            }
+            Side::Left | Side::LeftOf => true,
+            Side::Right | Side::RightOf => false,
+        };
+        if self.compensation.as_ref().is_some_and(|on| !on.is_ending()) {
+            return Self::not_now(block, group, COMPENSATED).map_or(Ok(()), Err);
+        }
+        let diameter = match side {
+            Side::LeftOf | Side::RightOf => match self.length(block, b'D')? {
+                Some(diameter) => diameter,
+                None => return Err(missing_of(block, group, 'D')),
+            },
+            _ => self.tool_of(block, b'D', group, remarks)?.diameter,
+        };
+        let radius = 0.5 * diameter.abs();
+        // A tool of negative diameter goes on the other side.
+        let left = left == (diameter >= 0.0);
+        let at = self
+            .compensation
+            .take()
+            .map_or(self.position, |on| on.position());
+        self.compensation = Some(Compensation::new(self.modal.plane, radius, left, at));
+        Ok(())
+    }
+}
