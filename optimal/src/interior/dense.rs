@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::cone::{Centre, Reach, Sums};
-use crate::front::Chain;
+use crate::front::{Chain, Local};
 use crate::problem::Visit;
 use crate::window::{EndState, Segment, Window};
 use toolglide_kinematics::Limits;
