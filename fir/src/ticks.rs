@@ -213,9 +213,9 @@ where
 
     #[inline]
     fn tick(&mut self, command: [T; N]) -> [T; N] {
-        self.recent.rotate_right(1);
-        if let Some(newest) = self.recent.first_mut() {
-            *newest = command;
+        let mut newer = command;
+        for held in &mut self.recent {
+            std::mem::swap(held, &mut newer);
         }
         let mut value = weighted(&self.weights, &self.recent);
         for stage in &mut self.stages {
