@@ -25,6 +25,9 @@ const COMMIT: f64 = 3.3;
 /// Longest window up to a stop of the path, in times to stop: what is left is planned at once.
 const LAST_WINDOW: f64 = 7.0;
 
+/// How many more intervals a stretch has that is planned at once: there is but one window to be solved.
+const REFINED: f64 = 1.3;
+
 /// Fewest spans of a window, where there are as many.
 const FEWEST_SPANS: usize = 4;
 
@@ -154,11 +157,16 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         let mut window = reach.max((self.planned + 1).min(known));
         if closing && self.fits_at_once(known) {
             window = known;
+            if self.planned == 0 {
+                self.refine();
+            }
         }
         if closing && window == known && self.planned == known {
             self.commit(known);
             return true;
         }
+        // What comes after the window is known, too: the path may end there.
+        let enough = enough && self.reach(LAST_WINDOW, FEWEST_SPANS).1;
         if !closing && (!enough || window == self.planned) {
             return false;
         }
@@ -208,6 +216,15 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
         let enough = time >= stops * stop_time && self.spans.len() >= fewest;
         (self.spans.len(), enough)
+    }
+
+    /// Cuts the time of a stretch that is planned at once more finely.
+    fn refine(&mut self) {
+        for (span, duration) in self.spans.iter_mut().zip(&self.free.times) {
+            if span.steps == 0 {
+                span.steps = span.steps_for(REFINED * duration);
+            }
+        }
     }
 
     /// Whether all that is left makes one window that is not much longer than usual.
