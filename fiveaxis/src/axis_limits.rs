@@ -19,6 +19,10 @@ pub(crate) const AIM: f64 = 0.995;
 /// Rounds of slowing down.
 const ROUNDS: u32 = 200;
 
+/// A block that would have to be slowed down by more than this passes a pole of the machine, where no
+/// speed is slow enough.
+const HOPELESS: f64 = 1e3;
+
 /// Largest factor by which a block is slowed down in one round.
 const STRONGEST: f64 = 1.5;
 
@@ -60,6 +64,8 @@ pub(crate) fn relax(
     met: &mut [Option<Worst>],
 ) -> Result<Vec<Steps>, FiveAxisError> {
     let mut before: Vec<Steps> = Vec::new();
+    let mut slowed = vec![1.0_f64; met.len()];
+    let mut violating = vec![false; met.len()];
     for round in 0..ROUNDS {
         let steps = stretch.steps();
         let knots = knots(&steps, chain);
@@ -74,16 +80,19 @@ pub(crate) fn relax(
             .collect();
         let mut factors = vec![1.0_f64; steps.len()];
         let mut easing = vec![Worst::NONE; steps.len()];
+        let still = std::mem::replace(&mut violating, vec![false; steps.len()]);
         let mut worst_of_all: Option<(usize, Worst)> = None;
         for (interval, range) in intervals(&steps, &knots, chain) {
             let [oldest, newest] = range;
-            if same[oldest..=newest].iter().all(|same| *same) {
+            let unchanged = same[oldest..=newest].iter().all(|same| *same);
+            if unchanged && !still[oldest..=newest].iter().any(|still| *still) {
                 continue;
             }
             let worst = stretch.worst(&steps, interval, range)?;
             if worst.share <= 1.0 {
                 continue;
             }
+            violating[oldest..=newest].fill(true);
             if worst_of_all.is_none_or(|(_, other)| worst.share > other.share) {
                 worst_of_all = Some((oldest, worst));
             }
@@ -94,17 +103,18 @@ pub(crate) fn relax(
             let fastest = (oldest..=newest)
                 .map(|block| stretch.pace(block))
                 .fold(0.0, f64::max);
-            let slowed: Vec<usize> = (oldest..=newest)
+            let fast: Vec<usize> = (oldest..=newest)
                 .filter(|&block| stretch.pace(block) >= SLOW * fastest)
                 .collect();
-            let slowing: f64 = slowed
+            let slowing: f64 = fast
                 .iter()
                 .map(|&block| (factor - 1.0) * *stretch.duration(block))
                 .sum();
             let eased: f64 = (oldest..newest)
                 .map(|block| stretch.cost_of_easing(block, &worst))
                 .sum();
-            if oldest < newest && eased < slowing {
+            // Easing is no help where it has just changed nothing.
+            if oldest < newest && eased < slowing && !unchanged {
                 for ease in &mut easing[oldest..newest] {
                     if worst.share > ease.share {
                         *ease = worst;
@@ -112,7 +122,7 @@ pub(crate) fn relax(
                 }
                 continue;
             }
-            for block in slowed {
+            for block in fast {
                 if factor > factors[block] {
                     factors[block] = factor;
                     met[block] = Some(worst);
@@ -122,7 +132,8 @@ pub(crate) fn relax(
         let Some((block, worst)) = worst_of_all else {
             return Ok(steps);
         };
-        if round + 1 == ROUNDS {
+        let hopeless = slowed.iter().any(|factor| *factor > HOPELESS);
+        if hopeless || round + 1 == ROUNDS {
             return Err(FiveAxisError::AxisLimit {
                 index: stretch.leg(block),
                 axis: axes.get(worst.axis).map_or('?', |axis| axis.name),
@@ -133,6 +144,7 @@ pub(crate) fn relax(
         for (block, factor) in factors.iter().enumerate() {
             if *factor > 1.0 {
                 *stretch.duration(block) *= factor;
+                slowed[block] *= factor;
             }
         }
         for (block, worst) in easing.iter().enumerate() {

@@ -22,6 +22,13 @@ const JERK_SCALE: f64 = 8.0;
 const LONGEST: f64 = 0.02;
 const WIDEST: f64 = 0.05;
 
+/// Most instants of a piece at a first look.
+const MOST_PARTS: f64 = 64.0;
+
+/// A piece that comes so near to a limit is looked at again, at so many times the instants.
+const CLOSE: f64 = 0.7;
+const FINER: f64 = 8.0;
+
 /// The limit that is exceeded most: by how much, on which axis, and which.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Worst {
@@ -74,7 +81,22 @@ pub(crate) fn worst(
     let parts = (piece.duration / LONGEST)
         .max(swing / WIDEST)
         .ceil()
-        .clamp(2.0, 64.0);
+        .clamp(2.0, MOST_PARTS);
+    let found = at_instants(machine, axes, piece, near, parts)?;
+    if found.share < CLOSE {
+        return Ok(found);
+    }
+    at_instants(machine, axes, piece, near, FINER * parts)
+}
+
+/// The same at equal steps of time.
+fn at_instants(
+    machine: &dyn MachineKinematics,
+    axes: &[Axis],
+    piece: &ToolPiece,
+    near: &AxisVector,
+    parts: f64,
+) -> Result<Worst, KinematicsError> {
     let mut worst = Worst::NONE;
     let mut near = *near;
     let mut part = 0.0;

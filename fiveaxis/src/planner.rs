@@ -3,7 +3,7 @@
 //! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
 
 use crate::axis_limits::{AIM, Stretch, least_duration, relax};
-use crate::block::PoseBlock;
+use crate::block::{PoseBlock, shares};
 use crate::corner::PoseCorner;
 use crate::error::FiveAxisError;
 use crate::follow::{Worst, worst};
@@ -22,13 +22,6 @@ use toolglide_kinematics::{
 /// Most legs of a stretch: a longer one is planned in parts that rest in between, so that memory is
 /// bounded. A rest every four thousand moves costs less than a ten-thousandth of the time.
 const MOST_LEGS: usize = 4096;
-
-/// Angle of the tool between two positions of the axes along a block, rad, and length of the tip, mm.
-const SHARE_ANGLE: f64 = 0.05;
-const SHARE_LENGTH: f64 = 5.0;
-
-/// Most such positions of a block.
-const MOST_SHARES: f64 = 48.0;
 
 /// Factors by which a corner is taken more gently at once.
 const LEAST_EASING: f64 = 1.08;
@@ -245,10 +238,7 @@ impl<'m> PosePlanner<'m> {
 
     /// Axis positions at equal shares of a block, ends included.
     fn way(&self, block: &PoseBlock) -> Result<Vec<AxisVector>, FiveAxisError> {
-        let shares = (block.turn.angle() / SHARE_ANGLE)
-            .max(block.length / SHARE_LENGTH)
-            .ceil()
-            .clamp(4.0, MOST_SHARES);
+        let shares = shares(block.length, block.turn.angle());
         let span = block.end - block.start;
         let mut way = vec![self.at];
         let mut near = self.at;

@@ -4,10 +4,12 @@
 //! forward kinematics turns into an orientation; plain mode gives positions of axes. Not here:
 //! reading programs.
 
+use crate::block::shares;
 use crate::error::FiveAxisError;
+use toolglide_kinematics::numeric::SAME_ORIENTATION;
 use toolglide_kinematics::{
-    AxisKind, AxisVector, MachineKinematics, OrientationTolerance, PoseEnd, PoseLeg, PoseMove,
-    PosePath, ToolPose, Vector,
+    AxisKind, AxisVector, KinematicsError, MachineKinematics, OrientationTolerance, PoseEnd,
+    PoseFeed, PoseLeg, PoseMove, PosePath, ToolPose, Vector,
 };
 
 /// Turns moves into legs, one after the other.
@@ -92,20 +94,21 @@ impl<'m> Resolver<'m> {
                 let tool = self.machine.forward(&near).map_err(machine)?.orientation();
                 let pose = ToolPose::new(linear, tool).map_err(path)?;
                 let axes = self.machine.inverse(&pose, &near).map_err(machine)?;
+                // A rapid goes to the very turns that its words say, straight on all axes: whoever
+                // programs one wants to be there, and a table unwinds.
+                if next.feed() == PoseFeed::Rapid && self.turns(&axes) {
+                    let start = self.at;
+                    self.at = axes;
+                    self.pose = pose;
+                    return Ok(leg(PosePath::Axes { start, end: axes }));
+                }
                 (pose, axes)
             }
             PoseEnd::Axes { linear, rotary, .. } => {
                 let end = self.words(index, Some(linear), rotary)?;
                 self.check_travel(&end).map_err(machine)?;
                 let start = self.at;
-                let turns = self
-                    .machine
-                    .axes()
-                    .iter()
-                    .zip(start.iter().zip(end.iter()))
-                    .any(|(axis, (start, end))| {
-                        axis.kind == AxisKind::Rotary && (end - start).abs() > 0.0
-                    });
+                let turns = self.turns(&end);
                 let pose = self.machine.forward(&end).map_err(machine)?;
                 if turns {
                     self.at = end;
@@ -126,9 +129,40 @@ impl<'m> Resolver<'m> {
         .map_err(path)?;
         made.stop = next.stops();
         made.line = next.line();
-        self.at = axes;
+        let follow = self.follow(&made).map_err(machine)?;
+        self.at = follow.unwrap_or(axes);
         self.pose = end;
         Ok(made)
+    }
+
+    /// Whether a rotary axis has to turn to be at `end`.
+    fn turns(&self, end: &AxisVector) -> bool {
+        self.machine
+            .axes()
+            .iter()
+            .zip(self.at.iter().zip(end.iter()))
+            .any(|(axis, (start, end))| {
+                axis.kind == AxisKind::Rotary && (end - start).abs() > SAME_ORIENTATION
+            })
+    }
+
+    /// Where the axes come to when they follow a leg without a jump.
+    fn follow(&self, leg: &PoseLeg) -> Result<Option<AxisVector>, KinematicsError> {
+        let PosePath::Tool { tip, turn } = &leg.path else {
+            return Ok(None);
+        };
+        let shares = shares(leg.length(), turn.angle());
+        let mut near = self.at;
+        let mut step = 0.0;
+        while step <= shares {
+            let share = step / shares;
+            let Ok(pose) = ToolPose::new(tip[0] + (tip[1] - tip[0]) * share, turn.at(share)) else {
+                return Ok(None);
+            };
+            near = self.machine.inverse(&pose, &near)?;
+            step += 1.0;
+        }
+        Ok(Some(near))
     }
 
     /// Axis positions by words: those of linear axes as they are where none are given.
@@ -161,12 +195,12 @@ impl<'m> Resolver<'m> {
         Ok(positions)
     }
 
-    fn check_travel(&self, at: &AxisVector) -> Result<(), toolglide_kinematics::KinematicsError> {
+    fn check_travel(&self, at: &AxisVector) -> Result<(), KinematicsError> {
         for (axis, &position) in self.machine.axes().iter().zip(at.iter()) {
             if let Some((low, high)) = axis.travel
                 && !(low..=high).contains(&position)
             {
-                return Err(toolglide_kinematics::KinematicsError::Travel {
+                return Err(KinematicsError::Travel {
                     axis: axis.name,
                     kind: axis.kind,
                     position,

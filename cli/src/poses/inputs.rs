@@ -7,13 +7,14 @@ use crate::error::CliError;
 use crate::filters;
 use crate::setup::{Setup, is_straight, machine};
 use crate::source::Source;
+use std::collections::VecDeque;
 use std::io::BufRead;
 
 use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{FiveAxisError, Resolver};
 use toolglide_kinematics::{
-    AxisKind, AxisVector, KinematicsError, MachineKinematics, OrientationTolerance, PoseEnd,
-    PoseLeg, PoseMove,
+    AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,
+    PoseEnd, PoseLeg, PoseMove, ToolPose,
 };
 use toolglide_program::{Language, Poses, Settings};
 
@@ -22,6 +23,9 @@ const DECIMALS: f64 = 1e6;
 
 /// The first filter is longer than the second by this factor where nobody says otherwise.
 const FIRST_TO_SECOND: f64 = 2.0;
+
+/// How far towards the second pose the way on is looked for, as a share.
+const BEYOND: f64 = 1e-3;
 
 /// Whether a run is one of tool poses: the machine has other axes than straight X, Y and Z, or the
 /// program is a file of tool poses.
@@ -120,7 +124,7 @@ impl Inputs {
             orientation_tolerance: self.orientation_tolerance,
             name,
             start,
-            ahead: None,
+            ahead: VecDeque::new(),
         };
         if !self.started {
             legs.start_at_first_pose()?;
@@ -138,24 +142,40 @@ pub(crate) struct Legs<'m> {
     resolver: Option<Resolver<'m>>,
     machine: &'m dyn MachineKinematics,
     orientation_tolerance: OrientationTolerance,
-    ahead: Option<PoseMove>,
+    ahead: VecDeque<PoseMove>,
 }
 
 impl Legs<'_> {
     /// A file of tool poses does not say how the tool gets to the first.
     fn start_at_first_pose(&mut self) -> Result<(), CliError> {
-        self.ahead = self.read()?;
-        if let Some(next) = &self.ahead
-            && let PoseEnd::Pose(pose) = next.end()
-        {
-            self.start = self.machine.inverse(pose, &self.start).map_err(|reason| {
+        for _ in 0..2 {
+            self.ahead.extend(self.read()?);
+        }
+        let pose = |at: usize| match self.ahead.get(at).map(|next| (next.end(), next.line())) {
+            Some((PoseEnd::Pose(pose), line)) => Some((*pose, line)),
+            _ => None,
+        };
+        let Some((first, line)) = pose(0) else {
+            return Ok(());
+        };
+        let inverse = |pose: &ToolPose, near: &AxisVector| {
+            self.machine.inverse(pose, near).map_err(|reason| {
                 refused(
                     &self.name,
-                    next.line(),
+                    line,
                     FiveAxisError::Machine { index: 0, reason },
                 )
-            })?;
+            })
+        };
+        let mut start = inverse(&first, &self.start)?;
+        // At a pole an axis may stand anywhere: it stands where the way on begins.
+        if let Some((second, _)) = pose(1)
+            && let Ok(turn) = GreatCircle::between(&first, &second)
+            && let Ok(beyond) = ToolPose::new(first.tip(), turn.at(BEYOND))
+        {
+            start = inverse(&first, &inverse(&beyond, &start)?)?;
         }
+        self.start = start;
         Ok(())
     }
 
@@ -168,7 +188,7 @@ impl Legs<'_> {
 
     /// The next leg; `None` at the end of the program.
     pub(crate) fn next(&mut self) -> Result<Option<PoseLeg>, CliError> {
-        let next = match self.ahead.take() {
+        let next = match self.ahead.pop_front() {
             Some(next) => Some(next),
             None => self.read()?,
         };

@@ -3,7 +3,9 @@
 //! Programs, feedrates and tolerances are those of `examples/dissertation/`; the limits of both axes
 //! stand here. Where the geometry is not printed it is our own construction, and says so.
 
+use super::poses::{PosePath, STAR_50, STAR_100, TABLE_5_1};
 use super::quantity::{Planned, Quantity};
+use toolglide_fiveaxis::PoseMethod;
 
 /// A program and the limits of its axes.
 #[derive(Debug)]
@@ -79,6 +81,21 @@ const FIR_STOP: &str = "fir-p2p";
 const SPEEDS: &str = "print rounds phases up to 0.1 ms and truncates the speed (inferred)";
 const MADE: &str = "geometry not printed, so ours differs";
 const NOT_PRINTED: &str = "not printed";
+
+const JOINT: PoseMethod = PoseMethod::JointSpace { way_points: 0 };
+
+const fn pose_time(
+    path: &'static PosePath,
+    method: PoseMethod,
+    printed: &'static str,
+    note: &'static str,
+) -> Entry {
+    Entry {
+        quantity: Quantity::PoseTime(path, method),
+        printed,
+        note,
+    }
+}
 
 const fn planned(course: &'static Course, method: &'static str) -> Planned {
     Planned { course, method }
@@ -324,6 +341,43 @@ pub(super) static EXPERIMENTS: &[Experiment] = &[
             deviation(&STARFISH, FIR, "<30", ""),
             time(&STARFISH, FIR, "", NOT_PRINTED),
             time(&STARFISH, FIR_STOP, "", NOT_PRINTED),
+        ],
+    },
+    Experiment {
+        name: "table-5.1",
+        title: "three tool poses; tolerances follow from the printed blend times",
+        entries: &[
+            pose_time(&TABLE_5_1, PoseMethod::PointToPoint, "", NOT_PRINTED),
+            pose_time(&TABLE_5_1, PoseMethod::DwellControlled, "0.620", ""),
+            pose_time(&TABLE_5_1, PoseMethod::VelocityControlled, "0.679", ""),
+            Entry {
+                quantity: Quantity::PoseOverlap(&TABLE_5_1),
+                printed: "100.4",
+                note: "print takes both turn rates for one; ours allows for their difference",
+            },
+        ],
+    },
+    Experiment {
+        name: "table-5.2",
+        title: "the star path; feedrate and tolerances are not printed, 50 mm/s matches the text best",
+        entries: &[
+            pose_time(&STAR_50, PoseMethod::PointToPoint, "", NOT_PRINTED),
+            pose_time(&STAR_50, PoseMethod::DwellControlled, "", NOT_PRINTED),
+            pose_time(&STAR_50, PoseMethod::VelocityControlled, "", NOT_PRINTED),
+            pose_time(&STAR_50, JOINT, "", NOT_PRINTED),
+            Entry {
+                quantity: Quantity::PoseGain(
+                    &STAR_50,
+                    PoseMethod::DwellControlled,
+                    PoseMethod::PointToPoint,
+                ),
+                printed: "40",
+                note: "printed 40 to 50 %; does not reproduce: no dwell at all gains 13 % here",
+            },
+            pose_time(&STAR_100, PoseMethod::PointToPoint, "", NOT_PRINTED),
+            pose_time(&STAR_100, PoseMethod::DwellControlled, "", NOT_PRINTED),
+            pose_time(&STAR_100, PoseMethod::VelocityControlled, "", NOT_PRINTED),
+            pose_time(&STAR_100, JOINT, "", NOT_PRINTED),
         ],
     },
 ];

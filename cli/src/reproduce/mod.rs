@@ -5,6 +5,7 @@
 
 mod crossover;
 mod experiments;
+mod poses;
 mod quantity;
 mod rows;
 mod run;

@@ -3,6 +3,8 @@
 //! Not here: its value.
 
 use super::experiments::Course;
+use super::poses::PosePath;
+use toolglide_fiveaxis::PoseMethod;
 
 /// A number of a figure or table.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +26,22 @@ pub(super) enum Quantity {
     Gain(&'static Course, f64),
     /// Largest distance from the path.
     Deviation(Planned),
+    /// Time for a path of tool poses.
+    PoseTime(&'static PosePath, PoseMethod),
+    /// By how much one method is faster than another on a path of tool poses, percent.
+    PoseGain(&'static PosePath, PoseMethod, PoseMethod),
+    /// How long the moves at the first corner of a path of tool poses overlap.
+    PoseOverlap(&'static PosePath),
+}
+
+/// A method of tool poses as the command line calls it.
+fn called(method: PoseMethod) -> &'static str {
+    match method {
+        PoseMethod::PointToPoint => "p2p",
+        PoseMethod::DwellControlled => "ns-dcb",
+        PoseMethod::VelocityControlled => "ns-vcb",
+        _ => "ns-jcb",
+    }
 }
 
 /// A program planned by a method.
@@ -43,6 +61,9 @@ impl Quantity {
             | Self::Ratio(planned, _)
             | Self::PerCorner(planned, _, _) => Some(planned.course.name),
             Self::CircleFeed(course, ..) | Self::Gain(course, _) => Some(course.name),
+            Self::PoseTime(path, _) | Self::PoseGain(path, ..) | Self::PoseOverlap(path) => {
+                Some(path.name)
+            }
             Self::Crossover(_) => None,
         }
     }
@@ -59,6 +80,11 @@ impl Quantity {
             Self::CircleFeed(_, radius, _) => format!("largest feedrate, radius of {radius} mm"),
             Self::Gain(_, frequency) => format!("gain of the filters at {frequency} Hz"),
             Self::Deviation(planned) => format!("deviation, {}", planned.method),
+            Self::PoseTime(_, method) => format!("cycle time, {}", called(*method)),
+            Self::PoseGain(_, method, other) => {
+                format!("{} faster than {}", called(*method), called(*other))
+            }
+            Self::PoseOverlap(_) => "blend time of the corner, ns-dcb".to_owned(),
             Self::Crossover(tolerance) => format!("crossover turn at {:.0} µm", 1e3 * tolerance),
         }
     }
@@ -66,11 +92,12 @@ impl Quantity {
     /// Its unit; nothing for a ratio.
     pub(super) fn unit(&self) -> &'static str {
         match self {
-            Self::CycleTime(_) => "s",
+            Self::CycleTime(_) | Self::PoseTime(..) => "s",
+            Self::PoseGain(..) => "%",
             Self::CornerSpeed(_) | Self::CircleFeed(..) => "mm/s",
             Self::Ratio(..) | Self::Gain(..) => "",
             Self::Deviation(_) => "µm",
-            Self::PerCorner(..) => "ms",
+            Self::PerCorner(..) | Self::PoseOverlap(_) => "ms",
             Self::Crossover(_) => "deg",
         }
     }
@@ -78,13 +105,14 @@ impl Quantity {
     /// Decimals with which it is shown: one or two more than are printed.
     pub(super) fn decimals(&self) -> usize {
         match self {
-            Self::CycleTime(_) | Self::Gain(..) => 5,
+            Self::CycleTime(_) | Self::PoseTime(..) | Self::Gain(..) => 5,
             Self::CornerSpeed(_)
             | Self::PerCorner(..)
+            | Self::PoseOverlap(_)
             | Self::CircleFeed(..)
             | Self::Deviation(_) => 2,
             Self::Ratio(..) => 4,
-            Self::Crossover(_) => 1,
+            Self::Crossover(_) | Self::PoseGain(..) => 1,
         }
     }
 }

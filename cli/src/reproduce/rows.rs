@@ -63,6 +63,11 @@ fn value(quantity: &Quantity, runs: &mut Runs) -> Result<f64, CliError> {
             let more = time(planned.course, planned.method)? - time(planned.course, other)?;
             1e3 * more / f64::from(corners)
         }
+        Quantity::PoseTime(path, method) => path.time(method)?,
+        Quantity::PoseGain(path, method, other) => {
+            100.0 * (1.0 - path.time(method)? / path.time(other)?)
+        }
+        Quantity::PoseOverlap(path) => 1e3 * path.overlap()?,
         Quantity::Crossover(tolerance) => crossover(tolerance, runs)?,
         Quantity::CircleFeed(course, radius, tolerance) => {
             let chain = course.chain()?.ok_or_else(|| none(course.name))?;

@@ -42,6 +42,7 @@ pub struct PoseSetPointJudge<'m> {
     current: usize,
     rows: VecDeque<(f64, AxisVector)>,
     last: Option<ToolPose>,
+    before_last: Option<ToolPose>,
     start: f64,
     report: PoseReport,
 }
@@ -79,6 +80,7 @@ impl<'m> PoseSetPointJudge<'m> {
             current: 0,
             rows: VecDeque::with_capacity(4),
             last: None,
+            before_last: None,
             start: 0.0,
             report: PoseReport::new(peaks),
         }
@@ -211,6 +213,18 @@ impl<'m> PoseSetPointJudge<'m> {
         (angle * (1.0 + pose.tip().norm() + LEVER), angle)
     }
 
+    /// How far tip and orientation may be from the chord between two rows: an eighth of the second
+    /// difference, twice over because it changes.
+    fn bulge(&self, pose: &ToolPose) -> [f64; 2] {
+        let (Some(one), Some(two)) = (self.before_last, self.last) else {
+            return [0.0; 2];
+        };
+        [
+            0.25 * (one.tip() - two.tip() * 2.0 + pose.tip()).norm(),
+            0.25 * (one.orientation() - two.orientation() * 2.0 + pose.orientation()).norm(),
+        ]
+    }
+
     fn judge_axes(&mut self, place: Place) {
         let rows = &self.rows;
         let newest = rows.len() - 1;
@@ -323,18 +337,20 @@ impl<'m> PoseSetPointJudge<'m> {
         }
         self.current = best.0;
         let place = self.place();
+        let bulge = self.bulge(pose);
         for index in self.current.saturating_sub(1)..self.legs.len().min(self.current + ENDS_AHEAD)
         {
             let expected = &mut self.legs[index];
             if let PosePath::Tool { tip, turn } = &expected.leg.path {
                 let from = self.last.map_or(pose.tip(), |last| last.tip());
-                let distance = from_segment(&tip[1], &from, &pose.tip()) - slack.0;
+                let distance = from_segment(&tip[1], &from, &pose.tip()) - slack.0 - bulge[0];
                 expected.tip = expected.tip.min(distance.max(0.0));
                 let from = self
                     .last
                     .map_or(pose.orientation(), |last| last.orientation());
                 // Between two rows the tool turns so little that its way is straight.
-                let angle = from_segment(&turn.end(), &from, &pose.orientation()) - slack.1;
+                let angle =
+                    from_segment(&turn.end(), &from, &pose.orientation()) - slack.1 - bulge[1];
                 expected.orientation = expected.orientation.min(angle.max(0.0));
             }
         }
@@ -390,6 +406,6 @@ impl<'m> PoseSetPointJudge<'m> {
             let speed = (pose.tip() - last.tip()).norm() / (time - before);
             self.report.peak_speed.raise(speed, time, place);
         }
-        self.last = Some(*pose);
+        self.before_last = self.last.replace(*pose);
     }
 }
