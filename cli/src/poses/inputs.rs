@@ -149,7 +149,8 @@ impl Legs<'_> {
     /// A file of tool poses does not say how the tool gets to the first.
     fn start_at_first_pose(&mut self) -> Result<(), CliError> {
         for _ in 0..2 {
-            self.ahead.extend(self.read()?);
+            let next = self.read()?;
+            self.ahead.extend(next);
         }
         let pose = |at: usize| match self.ahead.get(at).map(|next| (next.end(), next.line())) {
             Some((PoseEnd::Pose(pose), line)) => Some((*pose, line)),

@@ -22,7 +22,7 @@ const HEIGHT: f64 = 1200.0;
 const TOPS: [f64; 4] = [128.0, 396.0, 664.0, 932.0];
 
 /// Most poses that are kept for the paths; then every second one goes.
-const MOST_POSES: usize = 1 << 15;
+const MOST_POSES: usize = 1 << 12;
 
 /// Points of an arc on the sphere.
 const ARC_POINTS: u32 = 16;
