@@ -86,7 +86,7 @@ fn names_that_do_not_exist_are_answered_with_those_that_do() {
         &folder,
         &program,
         &["--machine", "lathe"],
-        "registered: gantry",
+        "registered: arm-6r",
     );
     refused(
         &folder,
@@ -249,7 +249,7 @@ fn machine_files_that_say_something_wrong() {
         ),
         ("tolerance_mm", "tolerance", "unknown field `tolerance`"),
         ("jerk = 5e4\n", "", "missing field `jerk`"),
-        ("\"gantry\"", "\"lathe\"", "registered: gantry"),
+        ("\"gantry\"", "\"lathe\"", "registered: arm-6r"),
         ("name = \"X\"", "name = \"A\"", "\"AY\""),
         ("name = \"X\"", "name = \"XX\"", "small.toml"),
         ("model", "model = 3\nmodle", "small.toml"),
