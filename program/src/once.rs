@@ -21,7 +21,7 @@ pub(crate) const COMPENSATED: &str = "while cutter compensation is on (G40 ends 
 impl Lowering {
     /// Refuses what cutter compensation cannot go through.
     pub(crate) fn check_compensated(&self, block: &Block) -> Result<(), Fault> {
-        if self.compensation.is_some() {
+        if self.compensation.as_ref().is_some_and(|on| !on.is_ending()) {
             let quiet = |group| Self::not_now(block, group, COMPENSATED);
             let groups = [Group::Plane, Group::ToolLength, Group::Coordinates];
             let plane_stays = block.plane.is_none_or(|plane| plane == self.modal.plane);

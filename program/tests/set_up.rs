@@ -360,6 +360,12 @@ fn compensated_arcs_shrink_grow_and_meet_lines() {
 }
 
 #[test]
+fn all_codes_are_possible_again_before_the_lead_out() {
+    let text = "F9 G41 D1\nG1 X10\nX20\nG40\nG20 G64 G18\nG0 X0 Z0\nG42 D1\nG1 X1\nZ1\nG40\nX0\n";
+    assert_eq!(with_tools(text).len(), 6, "moves");
+}
+
+#[test]
 fn compensation_that_would_gouge_is_refused() {
     for (text, line, expected) in [
         (
