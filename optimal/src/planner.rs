@@ -28,8 +28,8 @@ pub struct TimeOptimal<const N: usize, S = SequentialSolver<N>> {
     smoothing: KinematicSmoothing<N>,
     /// Pieces of the time-optimal motion, and where its stretches end.
     mine: VecDeque<Event<N>>,
-    /// Complete stretches among them.
-    complete: usize,
+    /// The last rest among them so far.
+    last_rest: Option<u32>,
     /// Pieces of the smoothed corners.
     theirs: VecDeque<Piece<N>>,
     /// Last move of each stretch that ends in a stop.
@@ -73,7 +73,7 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
                 &toolglide_smoothing::Settings::new(settings.limits),
             ),
             mine: VecDeque::with_capacity(MOST_HELD + 1),
-            complete: 0,
+            last_rest: None,
             theirs: VecDeque::with_capacity(MOST_HELD + 1),
             ends: VecDeque::new(),
             settled: Settled::Open,
@@ -87,8 +87,8 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
         while self.mine.len() < MOST_HELD
             && let Some(event) = self.optimal.pull()
         {
-            if event == Event::Rest {
-                self.complete += 1;
+            if let Event::Rest(index) = event {
+                self.last_rest = Some(index);
             }
             self.mine.push_back(event);
         }
@@ -118,7 +118,7 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
         if self.settled != Settled::Open {
             return;
         }
-        if self.complete > 0
+        if self.is_complete()
             && let Some(count) = self.their_stretch()
         {
             let mine: f64 = self
@@ -126,7 +126,8 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
                 .iter()
                 .map_while(|event| match event {
                     Event::Piece(piece) => Some(piece.duration()),
-                    Event::Rest => None,
+                    Event::Rest(index) if self.is_end(*index) => None,
+                    Event::Rest(_) => Some(0.0),
                 })
                 .sum();
             let theirs: f64 = self.theirs.range(..count).map(Piece::duration).sum();
@@ -155,7 +156,7 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
         let mine = || {
             self.mine.iter().filter_map(|event| match event {
                 Event::Piece(piece) => Some(piece),
-                Event::Rest => None,
+                Event::Rest(_) => None,
             })
         };
         let (Some(my_last), Some(their_last)) = (mine().next_back(), self.theirs.back()) else {
@@ -192,7 +193,6 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
         }
         if self.rested && self.their_stretch() == Some(0) {
             self.rested = false;
-            self.complete -= 1;
             self.ends.pop_front();
             self.settled = Settled::Open;
         }
@@ -204,12 +204,45 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
         if self.rested {
             return None;
         }
-        match self.mine.pop_front()? {
-            Event::Piece(piece) => Some(piece),
-            Event::Rest => {
-                self.rested = true;
-                None
+        loop {
+            match self.mine.pop_front()? {
+                Event::Piece(piece) => return Some(piece),
+                Event::Rest(index) if self.is_end(index) => {
+                    self.rested = true;
+                    return None;
+                }
+                // A stop within the stretch.
+                Event::Rest(_) => {}
             }
+        }
+    }
+
+    /// Whether a rest at the end of this move ends the stretch under way.
+    fn is_end(&self, index: u32) -> bool {
+        self.ends.front().is_some_and(|end| index >= *end)
+    }
+
+    /// Whether the time-optimal motion of the stretch under way is complete.
+    fn is_complete(&self) -> bool {
+        self.last_rest.is_some_and(|index| self.is_end(index))
+    }
+
+    /// Stretches between which the smoothed motion has one piece for moves of both, as for pauses that
+    /// follow each other, are one stretch.
+    fn join_stretches(&mut self) {
+        while let Some(&end) = self.ends.front() {
+            let within = self
+                .theirs
+                .partition_point(|piece| piece.serves().last <= end);
+            let straddles = self
+                .theirs
+                .get(within)
+                .is_some_and(|piece| piece.serves().first <= end);
+            if !straddles {
+                return;
+            }
+            self.ends.pop_front();
+            self.rested = false;
         }
     }
 
@@ -258,6 +291,7 @@ impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> 
     fn pull(&mut self) -> Option<Piece<N>> {
         loop {
             self.gather();
+            self.join_stretches();
             let before = (self.settled, self.ends.len(), self.rested);
             self.settle();
             if let Some(piece) = self.hand_out() {

@@ -21,8 +21,8 @@ const EVENTS: usize = 2048;
 pub(crate) enum Event<const N: usize> {
     /// Motion.
     Piece(Piece<N>),
-    /// The motion rests here, and all that was pushed before has been planned.
-    Rest,
+    /// The motion rests at the end of this move, and all up to it has been planned.
+    Rest(u32),
 }
 
 /// Plans a stream of moves by a window solver.
@@ -167,7 +167,8 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         if let Some(pause) = pause {
             self.events.push_back(Event::Piece(pause.piece(at)));
         }
-        self.events.push_back(Event::Rest);
+        self.events
+            .push_back(Event::Rest(self.index.saturating_sub(1)));
     }
 
     fn collect(&mut self) {

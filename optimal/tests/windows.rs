@@ -243,6 +243,39 @@ fn both_solvers_find_the_same_motion() {
 }
 
 #[test]
+fn pauses_that_follow_each_other_all_last() {
+    let room = Tolerance::new(0.05).unwrap();
+    let limits = Limits::uniform(500.0, 2000.0, 5e4).unwrap();
+    let line = |x: f64| {
+        let to = Vector::<2>::new(x, 0.0);
+        Move::line_to(to, Feedrate::new(100.0).unwrap(), room).unwrap()
+    };
+    let pause = |duration: f64| Move::dwell(duration, room).unwrap();
+    let mut path = Toolpath::starting_at(Vector::<2>::zeros()).unwrap();
+    for step in [
+        pause(0.0),
+        line(5.0),
+        pause(1.0),
+        pause(0.0),
+        line(5.0).with_exact_stop(),
+        line(5.0),
+        pause(0.5),
+        line(10.0),
+        line(10.001),
+        line(10.0),
+        pause(0.25),
+        line(10.0),
+        pause(0.0),
+    ] {
+        path.push(step).unwrap();
+    }
+    let (plan, tally) = run(SequentialSolver::new(), &path, limits);
+    let report = verify(&plan, &path, &limits);
+    assert!(report.passes(), "{tally:?} {:#?}", report.examples);
+    assert!(plan.duration() > 1.75, "{} s", plan.duration());
+}
+
+#[test]
 fn when_pieces_are_pulled_makes_no_difference() {
     let points: Vec<_> = (0..60)
         .map(|k| Vector::<2>::new(f64::from(k), f64::from(k % 3) * 0.7))
