@@ -29,6 +29,13 @@ const STRONGEST: f64 = 1.5;
 /// Least such factor, so that rounds come to an end.
 const WEAKEST: f64 = 1.002;
 
+/// Rounds after which what still exceeds a limit is slowed down as a whole, instead of what costs least:
+/// slow enough, every block keeps every limit.
+const PATIENCE: u32 = 100;
+
+/// Least factor by which blocks are slowed down from then on.
+const FIRM: f64 = 1.05;
+
 /// Blocks that are slower than this share of the fastest one under way are not slowed down further.
 const SLOW: f64 = 0.5;
 
@@ -99,12 +106,14 @@ pub(crate) fn relax(
             // Velocity, acceleration and jerk go with the first to the third power where the way
             // bends, and with the first where the speed changes.
             let power = [1.0, 0.75, 0.6][worst.order.min(2)];
-            let factor = worst.share.powf(power).clamp(WEAKEST, STRONGEST);
+            let firmly = round >= PATIENCE;
+            let weakest = if firmly { FIRM } else { WEAKEST };
+            let factor = worst.share.powf(power).clamp(weakest, STRONGEST);
             let fastest = (oldest..=newest)
                 .map(|block| stretch.pace(block))
                 .fold(0.0, f64::max);
             let fast: Vec<usize> = (oldest..=newest)
-                .filter(|&block| stretch.pace(block) >= SLOW * fastest)
+                .filter(|&block| firmly || stretch.pace(block) >= SLOW * fastest)
                 .collect();
             let slowing: f64 = fast
                 .iter()
@@ -114,7 +123,7 @@ pub(crate) fn relax(
                 .map(|block| stretch.cost_of_easing(block, &worst))
                 .sum();
             // Easing is no help where it has just changed nothing.
-            if oldest < newest && eased < slowing && !unchanged {
+            if oldest < newest && eased < slowing && !unchanged && !firmly {
                 for ease in &mut easing[oldest..newest] {
                     if worst.share > ease.share {
                         *ease = worst;

@@ -90,7 +90,7 @@ fn keeps_everything(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
     fn no_chain_of_poses_breaks_anything(
