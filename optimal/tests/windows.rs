@@ -121,9 +121,15 @@ fn path_of<const N: usize>(strokes: &[Stroke], tolerance: f64) -> Toolpath<N> {
             1 => Feedrate::new(20.0).unwrap(),
             _ => Feedrate::new(100.0).unwrap(),
         };
-        let mut next = at + heading * *length;
+        let mut next = match kind {
+            // To where it is, and a hair's breadth.
+            5 => at,
+            6 => at + heading * 1e-5,
+            _ => at + heading * *length,
+        };
         if *kind == 2 {
             path.push(Move::dwell(0.02, room).unwrap()).unwrap();
+            path.push(Move::dwell(0.01, room).unwrap()).unwrap();
         }
         if *kind == 3 {
             let mut center = at;
