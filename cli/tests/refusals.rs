@@ -250,7 +250,7 @@ fn machine_files_that_say_something_wrong() {
         ("tolerance_mm", "tolerance", "unknown field `tolerance`"),
         ("jerk = 5e4\n", "", "missing field `jerk`"),
         ("\"gantry\"", "\"lathe\"", "registered: arm-6r"),
-        ("name = \"X\"", "name = \"A\"", "\"AY\""),
+        ("name = \"X\"", "name = \"A\"", "the axes are A Y"),
         ("name = \"X\"", "name = \"XX\"", "small.toml"),
         ("model", "model = 3\nmodle", "small.toml"),
     ] {
