@@ -10,9 +10,6 @@ mod report;
 mod route;
 mod set_points;
 
-#[cfg(test)]
-mod tests;
-
 pub use report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
 pub use set_points::PoseSetPointJudge;
 

@@ -1,1 +1,0 @@
-//! Motions of poses that must pass, and motions that must not.
