@@ -4,7 +4,9 @@
 //! go on beyond its ends, so that a piece may be as short as it likes. Not here: what is done about
 //! it.
 
-use toolglide_kinematics::{Axis, AxisVector, KinematicsError, MachineKinematics, ToolPiece};
+use toolglide_kinematics::{
+    Axis, AxisKind, AxisVector, KinematicsError, MachineKinematics, ToolPiece,
+};
 
 /// Distance of the instants of a difference, s: the rounding of positions of a metre leaves less than
 /// 1 mm/s³ of a jerk, and a motion that changes within such a time is none for a machine.
@@ -28,6 +30,11 @@ const MOST_PARTS: f64 = 64.0;
 /// A piece that comes so near to a limit is looked at again, at so many times the instants.
 const CLOSE: f64 = 0.7;
 const FINER: f64 = 8.0;
+
+/// Largest turn of a rotary axis from one instant to the next, rad: where it turns further, as C does
+/// beside the pole, it is looked at again in finer steps, but not in more than so many.
+const STRIDE: f64 = 0.05;
+const FINEST: f64 = 1024.0;
 
 /// The limit that is exceeded most: by how much, on which axis, and which.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,31 +85,44 @@ pub(crate) fn worst(
         .iter()
         .map(|turn| (turn.angle[1] * piece.duration).abs())
         .sum();
-    let parts = (piece.duration / LONGEST)
+    let mut parts = (piece.duration / LONGEST)
         .max(swing / WIDEST)
         .ceil()
         .clamp(2.0, MOST_PARTS);
-    let found = at_instants(machine, axes, piece, near, parts)?;
-    if found.share < CLOSE {
-        return Ok(found);
+    loop {
+        let (found, stride) = at_instants(machine, axes, piece, near, parts)?;
+        if stride > STRIDE && parts < FINEST {
+            parts = (parts * FINER).min(FINEST);
+        } else if found.share < CLOSE || parts >= FINEST {
+            return Ok(found);
+        } else {
+            let (finer, _) = at_instants(machine, axes, piece, near, FINER * parts)?;
+            return Ok(finer);
+        }
     }
-    at_instants(machine, axes, piece, near, FINER * parts)
 }
 
-/// The same at equal steps of time.
+/// The same at equal steps of time, and the largest turn of a rotary axis in a step.
 fn at_instants(
     machine: &dyn MachineKinematics,
     axes: &[Axis],
     piece: &ToolPiece,
     near: &AxisVector,
     parts: f64,
-) -> Result<Worst, KinematicsError> {
+) -> Result<(Worst, f64), KinematicsError> {
     let mut worst = Worst::NONE;
     let mut near = *near;
+    let mut stride = 0.0_f64;
     let mut part = 0.0;
     while part <= parts {
         let time = piece.duration * part / parts;
-        near = machine.follow(&piece.extended(time), &near)?;
+        let here = machine.follow(&piece.extended(time), &near)?;
+        for (axis, (now, then)) in axes.iter().zip(here.iter().zip(near.iter())) {
+            if part > 0.0 && axis.kind == AxisKind::Rotary {
+                stride = stride.max((now - then).abs());
+            }
+        }
+        near = here;
         let mut around = [near; 7];
         for (offset, axes) in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]
             .iter()
@@ -131,5 +151,5 @@ fn at_instants(
         }
         part += 1.0;
     }
-    Ok(worst)
+    Ok((worst, stride))
 }
