@@ -18,7 +18,7 @@ mod render;
 mod sheet;
 mod spectra;
 mod trace;
-mod zoom;
+pub(crate) mod zoom;
 
 use corner::{CornerFinder, flatten};
 use envelope::Envelope;

@@ -11,6 +11,9 @@ const FAR_LIMIT: f64 = 3.0;
 /// Rapids faster than this many times the fastest cut are told instead of drawn.
 pub(super) const FAR_RAPID: f64 = 2.0;
 
+/// Programmed feedrates faster than this many times the fastest cut are told instead of drawn.
+const FAR_FEED: f64 = 5.0;
+
 /// Numbers from here on are shown in thousands: mm/s³ become m/s³.
 const THOUSANDS: f64 = 20_000.0;
 
@@ -83,7 +86,14 @@ fn feedrate<const N: usize>(
     chart: impl Fn((f64, f64)) -> Chart,
 ) {
     let fastest = plot.curves.peak(speed_curve(N));
-    let cutting = plot.cutting_speed.max(plot.curves.peak(feed_curve(N)));
+    let programmed_at_most = plot.curves.peak(feed_curve(N));
+    let never_reached =
+        plot.cutting_speed > 0.0 && programmed_at_most > FAR_FEED * plot.cutting_speed;
+    let cutting = if never_reached {
+        plot.cutting_speed
+    } else {
+        plot.cutting_speed.max(programmed_at_most)
+    };
     let too_fast = cutting > 0.0 && fastest > FAR_RAPID * cutting;
     let most = if too_fast {
         cutting
@@ -105,7 +115,10 @@ fn feedrate<const N: usize>(
     canvas.unclip();
     chart.draw_frame(canvas, "Feedrate along the path, mm/s");
     let mut entries = vec![("planned", color::MOTION, false)];
-    if cutting > 0.0 {
+    let beyond = format!("programmed up to {programmed_at_most:.0}");
+    if never_reached {
+        entries.push((&beyond, "", false));
+    } else if cutting > 0.0 {
         entries.push(("programmed", color::PROGRAMMED, true));
     }
     let told = format!("rapids up to {fastest:.0}");

@@ -1,16 +1,16 @@
 //! The sharpest corner, seen from near: the programmed path, the motion, and the tolerance.
 
-use super::canvas::{Anchor, Canvas, through};
+use super::canvas::{Anchor, Canvas, Outline, through};
 use super::chart::{Chart, NORMAL};
 use super::color;
 use super::corner::SharpCorner;
 use toolglide_kinematics::Vector;
 
 /// How far around the corner is shown, tolerances.
-const WINDOW: f64 = 4.5;
+pub(crate) const WINDOW: f64 = 4.5;
 
 /// How far the middle lies inside the corner, tolerances.
-const INSIDE: f64 = 1.6;
+pub(crate) const INSIDE: f64 = 1.6;
 
 /// Points that are drawn of a piece of motion.
 const POINTS: u32 = 48;
@@ -37,12 +37,10 @@ impl<const N: usize> View<N> {
     pub(crate) fn draw_motion(&self, corner: &SharpCorner<N>, color: &str, canvas: &mut Canvas) {
         let chart = &self.chart;
         canvas.clip(chart.x, chart.y, chart.width, chart.height);
-        let style = format!(
-            "fill=\"none\" stroke=\"{color}\" stroke-width=\"2.6\" stroke-linejoin=\"round\""
-        );
-        canvas.path(
+        draw_curve_near(
+            canvas,
+            color,
             &through(motion(corner).map(|(point, _)| self.at(point))),
-            &style,
         );
         canvas.unclip();
     }
@@ -99,23 +97,12 @@ pub(crate) fn draw<const N: usize>(
         scale,
     };
     let on_chart = |point: Vector<N>| view.at(point);
-    let ring = format!(
-        "fill=\"{0}\" fill-opacity=\"0.06\" stroke=\"{0}\" stroke-width=\"1.4\" \
-         stroke-dasharray=\"7 5\"",
-        color::BOUND
-    );
-    canvas.circle(
+    draw_bounds(
+        canvas,
+        &chart,
         on_chart(corner.point),
-        chart.pixels(tolerance * scale),
-        &ring,
-    );
-    let style = format!(
-        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"miter\"",
-        color::PROGRAMMED
-    );
-    canvas.path(
+        tolerance * scale,
         &through(corner.path.iter().map(|&point| on_chart(point))),
-        &style,
     );
     canvas.unclip();
     view.draw_motion(corner, color::MOTION, canvas);
@@ -127,20 +114,7 @@ pub(crate) fn draw<const N: usize>(
         let distance = |point: &Vector<N>| (point - corner.point).norm();
         distance(one).total_cmp(&distance(two))
     });
-    if let Some(nearest) = nearest {
-        let style = format!("stroke=\"{}\" stroke-width=\"1.2\"", color::MOTION);
-        canvas.line(on_chart(corner.point), on_chart(nearest), &style);
-        canvas.circle(
-            on_chart(nearest),
-            3.4,
-            &format!("fill=\"{}\"", color::MOTION),
-        );
-    }
-    canvas.circle(
-        on_chart(corner.point),
-        3.0,
-        &format!("fill=\"{}\"", color::PROGRAMMED),
-    );
+    draw_nearest(canvas, on_chart(corner.point), nearest.map(on_chart));
     canvas.unclip();
     let place = if corner.line > 0 {
         format!(", line {}", corner.line)
@@ -164,6 +138,46 @@ pub(crate) fn draw<const N: usize>(
     );
     chart.draw_name_across(canvas, &name);
     Some(view)
+}
+
+/// Draws the tolerance around a corner, and the path through it.
+pub(crate) fn draw_bounds(
+    canvas: &mut Canvas,
+    chart: &Chart,
+    corner: (f64, f64),
+    tolerance: f64,
+    path: &Outline,
+) {
+    let ring = format!(
+        "fill=\"{0}\" fill-opacity=\"0.06\" stroke=\"{0}\" stroke-width=\"1.4\" \
+         stroke-dasharray=\"7 5\"",
+        color::BOUND
+    );
+    canvas.circle(corner, chart.pixels(tolerance), &ring);
+    let style = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"miter\"",
+        color::PROGRAMMED
+    );
+    canvas.path(path, &style);
+}
+
+/// Draws the motion near a corner.
+pub(crate) fn draw_curve_near(canvas: &mut Canvas, color: &str, motion: &Outline) {
+    let style =
+        format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"2.6\" stroke-linejoin=\"round\"");
+    canvas.path(motion, &style);
+}
+
+/// Marks a corner and the point of the motion that is nearest.
+pub(crate) fn draw_nearest(canvas: &mut Canvas, corner: (f64, f64), nearest: Option<(f64, f64)>) {
+    if let Some(nearest) = nearest {
+        let style = format!("stroke=\"{}\" stroke-width=\"1.2\"", color::MOTION);
+        canvas.line(corner, nearest, &style);
+        let dot = format!("fill=\"{}\"", color::MOTION);
+        canvas.circle(nearest, 3.4, &dot);
+    }
+    let dot = format!("fill=\"{}\"", color::PROGRAMMED);
+    canvas.circle(corner, 3.0, &dot);
 }
 
 /// Points of the motion, close enough to look like a curve where the window is, and whether they

@@ -4,11 +4,13 @@
 //! Not here: reading programs, planning, and machines.
 
 mod check;
+mod corner;
 mod inputs;
 mod plot;
 mod rows;
 mod run;
 mod summary;
+mod zoom;
 
 pub(crate) use check::verify;
 pub(crate) use inputs::concerns;

@@ -1,9 +1,11 @@
-//! A picture of pose motion: the path of the tool tip, the orientation on the sphere, and what share
-//! of its limits every axis uses.
+//! A picture of pose motion: the path of the tool tip, the orientation on the sphere, the sharpest
+//! corner of both with its tolerance, and what share of its limits every axis uses.
 //!
 //! Gathered in fixed memory while the motion streams past. Derivatives are differences of set-points,
 //! good enough to look at; the judge is exact. Not here: planning.
 
+use super::corner::{Part, PoseCornerFinder};
+use super::zoom;
 use crate::plot::Caption;
 use crate::plot::canvas::{Anchor, Canvas, Outline, through};
 use crate::plot::chart::{Chart, NORMAL, SMALL, time_unit};
@@ -11,7 +13,7 @@ use crate::plot::color;
 use crate::plot::curve::draw_curve;
 use crate::plot::envelope::Envelope;
 use toolglide_fiveaxis::PoseTick;
-use toolglide_kinematics::{Axis, PoseLeg, PosePath, SamplePeriod, Vector};
+use toolglide_kinematics::{Axis, PoseLeg, PosePath, PosePiece, SamplePeriod, Vector};
 
 /// Size of the sheet, pixels.
 const WIDTH: f64 = 1600.0;
@@ -41,6 +43,7 @@ pub(crate) struct PosePlot {
     motion: Vec<(Vector<3>, Vector<3>)>,
     stride: u64,
     legs: Vec<PoseLeg>,
+    corners: [PoseCornerFinder; 2],
     time: f64,
 }
 
@@ -54,6 +57,7 @@ impl PosePlot {
             motion: Vec::new(),
             stride: 1,
             legs: Vec::new(),
+            corners: [Part::Tip, Part::Orientation].map(PoseCornerFinder::new),
             time: 0.0,
             axes: axes.to_vec(),
         }
@@ -61,8 +65,18 @@ impl PosePlot {
 
     /// Takes the next leg of the path.
     pub(crate) fn expect(&mut self, leg: &PoseLeg) {
+        for corner in &mut self.corners {
+            corner.expect(leg);
+        }
         if matches!(leg.path, PosePath::Tool { .. }) && self.legs.len() < MOST_LEGS {
             self.legs.push(leg.clone());
+        }
+    }
+
+    /// Takes the next piece of the motion.
+    pub(crate) fn observe(&mut self, piece: &PosePiece) {
+        for corner in &mut self.corners {
+            corner.observe(piece);
         }
     }
 
@@ -120,6 +134,9 @@ impl PosePlot {
         caption.draw(&mut canvas);
         self.draw_tip(&mut canvas);
         self.draw_sphere(&mut canvas);
+        for (corner, left) in self.corners.iter().zip([64.0, 424.0]) {
+            zoom::draw(corner, &mut canvas, [left, 876.0, 300.0, 268.0]);
+        }
         let time = if self.time > 0.0 { self.time } else { 1.0 };
         let count = self.axes.len();
         let (unit, name) = time_unit(time);
@@ -231,7 +248,7 @@ impl PosePlot {
             x: 64.0,
             y: 128.0,
             width: 660.0,
-            height: 470.0,
+            height: 336.0,
             across: padded(across),
             upward: padded(upward),
         }
@@ -281,9 +298,9 @@ impl PosePlot {
     fn draw_sphere(&self, canvas: &mut Canvas) {
         let chart = Chart {
             x: 64.0,
-            y: 674.0,
+            y: 508.0,
             width: 660.0,
-            height: 470.0,
+            height: 316.0,
             across: (-1.05, 1.05),
             upward: (-1.05, 1.05),
         };

@@ -254,6 +254,9 @@ impl<'a> Run<'a> {
 
     fn take(&mut self, piece: PosePiece) -> Result<(), CliError> {
         self.judge.observe(&piece);
+        if let Some(plot) = &mut self.plot {
+            plot.observe(&piece);
+        }
         self.sampler.feed(piece);
         while let Some(tick) = self.sampler.next_tick() {
             let tick = tick.map_err(|reason| self.unreachable(reason))?;
