@@ -5,17 +5,17 @@
 
 use crate::args::CompareArgs;
 use crate::comparison::{Comparison, MethodRow};
-use crate::error::{CliError, DONE, OUTSIDE};
-use crate::output::OutputFile;
+use crate::drawing::Drawing;
+use crate::error::CliError;
 use crate::pipeline::Lane;
 use crate::plan::{moves, title, warn};
 use crate::planner::{EXACT_STOP, Tuning, chosen, planner};
-use crate::plot::{Caption, Feeds, Picture};
+use crate::plot::{Caption, Feeds};
 use crate::setup::Setup;
+use crate::shown::show;
 use crate::source::Source;
 use crate::travel::OnAxes;
 use std::io::Write;
-use std::path::Path;
 use toolglide_kinematics::Move;
 use toolglide_kinematics::verify::Judge;
 
@@ -41,15 +41,9 @@ fn run<const N: usize>(
 where
     Move<N>: OnAxes,
 {
-    let picture = args.plot.as_deref().map(Picture::of).transpose()?;
     let source = Source::open(&args.job.program)?;
     let name = source.name.clone();
-    let inputs = [args.job.program.as_path(), Path::new(&args.job.machine)];
-    let drawing = args
-        .plot
-        .as_deref()
-        .map(|path| OutputFile::begin(path, &inputs))
-        .transpose()?;
+    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let chosen = chosen(&args.methods);
     let tuning = Tuning::of(&args.tuning, setup)?;
     let (start, limits) = (setup.start::<N>(), setup.limits::<N>());
@@ -98,21 +92,13 @@ where
         .collect();
     warn(&moves.program, err);
     let comparison = Comparison::new(&name, setup, blocks, rows);
-    if let (Some(mut file), Some(picture), Some(feeds)) = (drawing, picture, feeds) {
+    if let (Some(mut drawing), Some(feeds)) = (drawing, feeds) {
         let caption = Caption {
             title: title(&name),
             subtitle: format!("feedrates of {} methods on {}", chosen.len(), setup.machine),
         };
-        picture.write(&feeds.draw(&caption), &mut file)?;
-        file.commit()?;
+        drawing.write(&feeds.draw(&caption))?;
+        drawing.commit()?;
     }
-    let text = if args.job.json {
-        comparison.json()?
-    } else {
-        comparison.text()
-    };
-    out.write_all(text.as_bytes())
-        .map_err(|reason| CliError::write("standard output", reason))?;
-    let _ = err.write_all(comparison.complaint().as_bytes());
-    Ok(if comparison.passes() { DONE } else { OUTSIDE })
+    show(&comparison, args.job.json, out, err)
 }

@@ -3,6 +3,7 @@
 //! Source: the judge's reports. Not here: planning.
 
 use crate::setup::Setup;
+use crate::shown::{Shown, quoted};
 use crate::summary::worst_first;
 use serde::Serialize;
 use std::fmt::Write;
@@ -83,20 +84,34 @@ impl Comparison {
         }
     }
 
-    /// Whether no method broke anything.
-    pub(crate) fn passes(&self) -> bool {
+    fn peaks(
+        &self,
+        text: &mut String,
+        title: &str,
+        limits: &[f64],
+        peaks: impl Fn(&MethodRow) -> &[f64],
+    ) {
+        let _ = write!(text, "\n{title}\n{:<18}", "method");
+        for axis in &self.axes {
+            let _ = write!(text, " {axis:>12} {:>8}", "");
+        }
+        trim(text);
+        for row in &self.methods {
+            let _ = write!(text, "{:<18}", row.method);
+            for (peak, limit) in peaks(row).iter().zip(limits) {
+                let _ = write!(text, " {peak:>12.1} {:>6.1} %", 100.0 * peak / limit);
+            }
+            trim(text);
+        }
+    }
+}
+
+impl Shown for Comparison {
+    fn passes(&self) -> bool {
         self.methods.iter().all(|row| row.violations == 0)
     }
 
-    /// The comparison as one JSON object, with a line end.
-    pub(crate) fn json(&self) -> Result<String, serde_json::Error> {
-        let mut text = serde_json::to_string_pretty(self)?;
-        text.push('\n');
-        Ok(text)
-    }
-
-    /// The comparison for people.
-    pub(crate) fn text(&self) -> String {
+    fn text(&self) -> String {
         let mut text = format!(
             "{}: {} blocks, planned for {}\n\n",
             self.program, self.blocks, self.machine
@@ -140,41 +155,14 @@ impl Comparison {
         text
     }
 
-    fn peaks(
-        &self,
-        text: &mut String,
-        title: &str,
-        limits: &[f64],
-        peaks: impl Fn(&MethodRow) -> &[f64],
-    ) {
-        let _ = write!(text, "\n{title}\n{:<18}", "method");
-        for axis in &self.axes {
-            let _ = write!(text, " {axis:>12} {:>8}", "");
-        }
-        trim(text);
-        for row in &self.methods {
-            let _ = write!(text, "{:<18}", row.method);
-            for (peak, limit) in peaks(row).iter().zip(limits) {
-                let _ = write!(text, " {peak:>12.1} {:>6.1} %", 100.0 * peak / limit);
-            }
-            trim(text);
-        }
-    }
-
-    /// What was broken by which method, worst first, one line each; empty when nothing was.
-    pub(crate) fn complaint(&self) -> String {
-        let mut text = String::new();
-        for row in &self.methods {
-            for violation in &row.worst {
-                let _ = writeln!(text, "{}: {}: {violation}", self.program, row.method);
-            }
-            let quoted = row.worst.len() as u64;
-            if row.violations > quoted {
-                let more = row.violations - quoted;
-                let _ = writeln!(text, "{}: {}: and {more} more", self.program, row.method);
-            }
-        }
-        text
+    fn complaint(&self) -> String {
+        self.methods
+            .iter()
+            .map(|row| {
+                let whose = format!("{}: {}", self.program, row.method);
+                quoted(&whose, &row.worst, row.violations)
+            })
+            .collect()
     }
 }
 

@@ -4,19 +4,19 @@
 //! each section of it between stops has its optimum. Not here: what the optimum is.
 
 use crate::args::ScoreArgs;
-use crate::error::{CliError, DONE, OUTSIDE};
+use crate::drawing::Drawing;
+use crate::error::CliError;
 use crate::interrupt::check_interrupt;
-use crate::output::OutputFile;
 use crate::plan::{moves, title, warn};
 use crate::planner::{Tuning, chosen, planner};
-use crate::plot::{Caption, Contrast, Picture};
+use crate::plot::{Caption, Contrast};
 use crate::progress::Steps;
 use crate::setup::Setup;
+use crate::shown::show;
 use crate::source::Source;
 use crate::standing::{Loss, MethodStanding, Sample, Standing, Sums};
 use crate::travel::OnAxes;
 use std::io::Write;
-use std::path::Path;
 use toolglide_kinematics::{Limits, Move, Plan, Toolpath, Trajectory, verify};
 use toolglide_reference::{Course, Section, Settings, Window, Windows, certify, hold, part};
 use toolglide_reference::{Score, Sections};
@@ -49,15 +49,9 @@ fn run<const N: usize>(
 where
     Move<N>: OnAxes,
 {
-    let picture = args.plot.as_deref().map(Picture::of).transpose()?;
     let source = Source::open(&args.job.program)?;
     let name = source.name.clone();
-    let inputs = [args.job.program.as_path(), Path::new(&args.job.machine)];
-    let drawing = args
-        .plot
-        .as_deref()
-        .map(|path| OutputFile::begin(path, &inputs))
-        .transpose()?;
+    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let limits = setup.limits::<N>();
     let mut windows = Windows::new(setup.start::<N>(), limits);
     let mut moves = moves::<N>(&args.job, setup, source);
@@ -111,23 +105,15 @@ where
     }
     drop(bar);
     let standing = Standing::new(&name, setup, sample, sums);
-    if let (Some(mut file), Some(picture), Some(contrast)) = (drawing, picture, contrast) {
+    if let (Some(mut drawing), Some(contrast)) = (drawing, contrast) {
         let caption = Caption {
             title: title(&name),
             subtitle: format!("the optimum beside {} on {}", methods[0], setup.machine),
         };
-        picture.write(&contrast.draw(&caption), &mut file)?;
-        file.commit()?;
+        drawing.write(&contrast.draw(&caption))?;
+        drawing.commit()?;
     }
-    let text = if args.job.json {
-        standing.json()?
-    } else {
-        standing.text()
-    };
-    out.write_all(text.as_bytes())
-        .map_err(|reason| CliError::write("standard output", reason))?;
-    let _ = err.write_all(standing.complaint().as_bytes());
-    Ok(if standing.passes() { DONE } else { OUTSIDE })
+    show(&standing, args.job.json, out, err)
 }
 
 /// Adds what a window gave.

@@ -5,21 +5,21 @@
 //! here: the oscillators.
 
 use crate::args::SpectrumArgs;
-use crate::error::{CliError, DONE, OUTSIDE};
+use crate::drawing::Drawing;
+use crate::error::CliError;
 use crate::filters;
-use crate::output::OutputFile;
 use crate::pipeline::Lane;
 use crate::plan::{moves, title, warn};
 use crate::planner::{Tuning, chosen, planner};
-use crate::plot::{Caption, Picture, Spectra, Spectrum};
+use crate::plot::{Caption, Spectra, Spectrum};
 use crate::setup::Setup;
+use crate::shown::{Shown, quoted, show};
 use crate::source::Source;
 use crate::summary::worst_first;
 use crate::travel::OnAxes;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::Path;
 use toolglide_fir::{Mode, Resonator};
 use toolglide_kinematics::verify::Judge;
 use toolglide_kinematics::{Move, Piece};
@@ -95,7 +95,7 @@ impl Oscillators {
 
 /// All that is shown.
 #[derive(Clone, Debug, Serialize)]
-struct Shown {
+struct Found {
     program: String,
     machine: String,
     time_constants_s: Option<Vec<f64>>,
@@ -144,15 +144,9 @@ where
 {
     let modes = excited(setup)?;
     let tuning = Tuning::of(&args.tuning, setup)?;
-    let picture = args.plot.as_deref().map(Picture::of).transpose()?;
     let source = Source::open(&args.job.program)?;
     let name = source.name.clone();
-    let inputs = [args.job.program.as_path(), Path::new(&args.job.machine)];
-    let drawing = args
-        .plot
-        .as_deref()
-        .map(|path| OutputFile::begin(path, &inputs))
-        .transpose()?;
+    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let frequencies = frequencies(&modes);
     let mut axes: Vec<usize> = modes.iter().map(|excited| excited.axis).collect();
     axes.sort_unstable();
@@ -197,33 +191,18 @@ where
             }
         })
         .collect();
-    let shown = Shown {
-        program: name.clone(),
+    let spectra = Found {
+        program: name,
         machine: setup.machine.clone(),
         time_constants_s: tuning.filters.map(|chain| chain.time_constants().to_vec()),
         methods,
         frequencies_hz: frequencies,
     };
-    if let (Some(mut file), Some(picture)) = (drawing, picture) {
-        picture.write(&shown.draw(setup, &modes), &mut file)?;
-        file.commit()?;
+    if let Some(mut drawing) = drawing {
+        drawing.write(&spectra.draw(setup, &modes))?;
+        drawing.commit()?;
     }
-    let text = if args.job.json {
-        let mut text = serde_json::to_string_pretty(&shown)?;
-        text.push('\n');
-        text
-    } else {
-        shown.text()
-    };
-    out.write_all(text.as_bytes())
-        .map_err(|reason| CliError::write("standard output", reason))?;
-    for row in &shown.methods {
-        for wrong in &row.worst {
-            let _ = writeln!(err, "{name}: {}: {wrong}", row.method);
-        }
-    }
-    let passes = shown.methods.iter().all(|row| row.violations == 0);
-    Ok(if passes { DONE } else { OUTSIDE })
+    show(&spectra, args.job.json, out, err)
 }
 
 /// The modes of the run, each of an axis that there is.
@@ -304,7 +283,7 @@ fn magnitudes(setup: &Setup, oscillators: &Oscillators) -> Vec<Magnitudes> {
         .collect()
 }
 
-impl Shown {
+impl Shown for Found {
     fn text(&self) -> String {
         let mut text = format!("{}: modes of {}", self.program, self.machine);
         if let Some(time_constants) = &self.time_constants_s {
@@ -350,6 +329,22 @@ impl Shown {
         text
     }
 
+    fn complaint(&self) -> String {
+        self.methods
+            .iter()
+            .map(|row| {
+                let whose = format!("{}: {}", self.program, row.method);
+                quoted(&whose, &row.worst, row.violations)
+            })
+            .collect()
+    }
+
+    fn passes(&self) -> bool {
+        self.methods.iter().all(|row| row.violations == 0)
+    }
+}
+
+impl Found {
     /// The magnitude at the frequency of the spectrum that is nearest.
     fn near(&self, spectrum: &Magnitudes, frequency: f64) -> f64 {
         let after = self

@@ -3,6 +3,7 @@
 //! Source: sums over what was scored. Not here: scoring.
 
 use crate::setup::Setup;
+use crate::shown::Shown;
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_reference::{corner_penalty_ratio, score};
@@ -129,22 +130,16 @@ impl Standing {
             losses,
         }
     }
+}
 
+impl Shown for Standing {
     /// Whether no method broke anything, and none beat its bound.
-    pub(crate) fn passes(&self) -> bool {
+    fn passes(&self) -> bool {
         let sound = |method: &MethodStanding| method.violations == 0 && !method.beats_its_bound();
         self.methods.iter().all(sound)
     }
 
-    /// The standing as one JSON object, with a line end.
-    pub(crate) fn json(&self) -> Result<String, serde_json::Error> {
-        let mut text = serde_json::to_string_pretty(self)?;
-        text.push('\n');
-        Ok(text)
-    }
-
-    /// The standing for people.
-    pub(crate) fn text(&self) -> String {
+    fn text(&self) -> String {
         let Sample {
             whole,
             windows,
@@ -211,8 +206,7 @@ impl Standing {
         text
     }
 
-    /// What is wrong, one line each; empty when nothing is.
-    pub(crate) fn complaint(&self) -> String {
+    fn complaint(&self) -> String {
         let mut text = String::new();
         for method in &self.methods {
             if method.violations > 0 {

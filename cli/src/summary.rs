@@ -3,6 +3,7 @@
 //! Source: the judge's report. Not here: judging.
 
 use crate::setup::Setup;
+use crate::shown::{Shown, quoted, verdict};
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_kinematics::WindowTally;
@@ -126,15 +127,32 @@ impl Summary {
         }
     }
 
-    /// The summary as one JSON object, with a line end.
-    pub(crate) fn json(&self) -> Result<String, serde_json::Error> {
-        let mut text = serde_json::to_string_pretty(self)?;
+    fn axes_table(&self, text: &mut String) {
+        text.push_str("axis         velocity, mm/s      acceleration, mm/s²     jerk, mm/s³\n");
+        for (axis, letter) in self.axes.iter().enumerate() {
+            let cell = |peaks: &[f64], limits: &[f64]| {
+                let peak = peaks.get(axis).copied().unwrap_or(0.0);
+                let limit = limits.get(axis).copied().unwrap_or(f64::INFINITY);
+                format!("{peak:.1}  {:.1} %", 100.0 * peak / limit)
+            };
+            let _ = writeln!(
+                text,
+                "{letter:<12} {:<19} {:<23} {}",
+                cell(&self.peak_velocity, &self.velocity_limit),
+                cell(&self.peak_acceleration, &self.acceleration_limit),
+                cell(&self.peak_jerk, &self.jerk_limit),
+            );
+        }
         text.push('\n');
-        Ok(text)
+    }
+}
+
+impl Shown for Summary {
+    fn passes(&self) -> bool {
+        self.violations == 0
     }
 
-    /// The summary for a machinist.
-    pub(crate) fn text(&self) -> String {
+    fn text(&self) -> String {
         let mut text = String::new();
         let how = match &self.method {
             Some(method) => format!("planned by {method} for {}", self.machine),
@@ -181,53 +199,12 @@ impl Summary {
         if let Some(windows) = &self.windows {
             let _ = writeln!(text, "windows      {}", windows.text());
         }
-        let verdict = match self.violations {
-            0 => "verdict      every limit and tolerance is kept".to_owned(),
-            1 => "verdict      NOT ALLOWED: 1 violation".to_owned(),
-            more => format!("verdict      NOT ALLOWED: {more} violations"),
-        };
-        let _ = writeln!(text, "{verdict}");
+        text.push_str(&verdict(self.violations));
         text
     }
 
-    fn axes_table(&self, text: &mut String) {
-        text.push_str("axis         velocity, mm/s      acceleration, mm/s²     jerk, mm/s³\n");
-        for (axis, letter) in self.axes.iter().enumerate() {
-            let cell = |peaks: &[f64], limits: &[f64]| {
-                let peak = peaks.get(axis).copied().unwrap_or(0.0);
-                let limit = limits.get(axis).copied().unwrap_or(f64::INFINITY);
-                format!("{peak:.1}  {:.1} %", 100.0 * peak / limit)
-            };
-            let _ = writeln!(
-                text,
-                "{letter:<12} {:<19} {:<23} {}",
-                cell(&self.peak_velocity, &self.velocity_limit),
-                cell(&self.peak_acceleration, &self.acceleration_limit),
-                cell(&self.peak_jerk, &self.jerk_limit),
-            );
-        }
-        text.push('\n');
-    }
-
-    /// What was broken, worst first, one line each; empty when nothing was.
-    pub(crate) fn complaint(&self) -> String {
-        let mut text = String::new();
-        if self.violations == 0 {
-            return text;
-        }
-        for violation in &self.worst {
-            let _ = writeln!(text, "{}: {violation}", self.program);
-        }
-        let quoted = self.worst.len() as u64;
-        if self.violations > quoted {
-            let _ = writeln!(
-                text,
-                "{}: and {} more",
-                self.program,
-                self.violations - quoted
-            );
-        }
-        text
+    fn complaint(&self) -> String {
+        quoted(&self.program, &self.worst, self.violations)
     }
 }
 

@@ -9,8 +9,9 @@ use crate::error::CliError;
 use crate::interrupt::check_interrupt;
 use crate::output::same_file;
 use crate::pipeline::Moves;
-use crate::plan::{moves, report, warn};
+use crate::plan::{moves, warn};
 use crate::setup::Setup;
+use crate::shown::show;
 use crate::source::{Source, open_file};
 use crate::summary::Summary;
 use crate::table::Table;
@@ -102,7 +103,7 @@ where
     let blocks = follower.moves.program.blocks();
     let mut summary = Summary::of(&name, setup, &verdict, blocks, rows);
     summary.set_points = Some(file.display().to_string());
-    report(&summary, args.job.json, out, err)
+    show(&summary, args.job.json, out, err)
 }
 
 /// What rounding may have changed in a coordinate: half a step of the finest number.

@@ -3,12 +3,12 @@
 //! Not here: reading the table, and judging.
 
 use super::inputs::Inputs;
-use super::run::report;
 use super::summary::PoseSummary;
 use crate::args::VerifyArgs;
 use crate::error::CliError;
 use crate::interrupt::check_interrupt;
 use crate::output::same_file;
+use crate::shown::show;
 use crate::source::open_file;
 use crate::table::Table;
 use std::fs::File;
@@ -101,7 +101,7 @@ fn judge<const N: usize>(
     let blocks = legs.program.blocks();
     let mut summary = PoseSummary::of(&legs.name, &inputs.setup, &verdict, blocks, rows);
     summary.set_points = Some(file.display().to_string());
-    report(&summary, args.job.json, out, err)
+    show(&summary, args.job.json, out, err)
 }
 
 fn open(file: &Path) -> Result<BufReader<File>, CliError> {

@@ -8,14 +8,14 @@ use super::plot::PosePlot;
 use super::rows::Rows;
 use super::summary::PoseSummary;
 use crate::args::PlanArgs;
-use crate::error::{CliError, DONE, OUTSIDE};
+use crate::drawing::PlanFiles;
+use crate::error::CliError;
 use crate::interrupt::check_interrupt;
-use crate::plan::{begin, title};
-use crate::plot::{Caption, Picture};
-use crate::set_points::Destination;
+use crate::plan::title;
+use crate::plot::Caption;
+use crate::shown::{show, show_beside_rows};
 use crate::summary::clock;
 use std::io::Write;
-use std::path::Path;
 use std::time::{Duration, Instant};
 use toolglide_fiveaxis::{
     FiveAxisError, PoseMethod, PosePlanner, PoseSampler, PoseSettings, PoseTick,
@@ -46,14 +46,6 @@ pub(crate) fn plan(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
-    let to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    if to_stdout && args.job.json {
-        return Err(CliError::Option {
-            option: "--json",
-            value: "with -o -".to_owned(),
-            bound: "only one of them can have standard output".to_owned(),
-        });
-    }
     let name = args.method.as_deref().unwrap_or(METHODS[0].name);
     let method = method(name, args.poses.way_points)?;
     let inputs = Inputs::new(
@@ -72,29 +64,17 @@ pub(crate) fn plan(
     if let Some(rate) = args.poses.turn_rate {
         settings = settings.with_turn_rate(rate);
     }
-    let picture = args.plot.as_deref().map(Picture::of).transpose()?;
-    let (mut file, drawing) = begin(args, to_stdout)?;
+    let mut files = PlanFiles::begin(args)?;
     let legs = inputs.open(&args.job)?;
-    let destination = match &mut file {
-        Some(file) => {
-            let name = file.path().to_owned();
-            Some(Destination { sink: file, name })
-        }
-        None if to_stdout => Some(Destination {
-            sink: &mut *out,
-            name: "standard output".into(),
-        }),
-        None => None,
-    };
+    let drawn = files.drawing.is_some();
+    let destination = files.rows.destination(out);
     let rows = Rows::new(
         inputs.setup.period,
         &inputs.setup.axes,
         args.pose,
         destination,
     );
-    let plot = drawing
-        .is_some()
-        .then(|| PosePlot::new(&inputs.setup.axes, inputs.setup.period));
+    let plot = drawn.then(|| PosePlot::new(&inputs.setup.axes, inputs.setup.period));
     let mut run = Run::new(&inputs, legs, settings, rows, plot)?;
     run.read()?;
     let done = run.finish(&inputs)?;
@@ -103,26 +83,13 @@ pub(crate) fn plan(
     summary.fir_s = time_constants;
     summary.period_s = Some(inputs.setup.period.seconds());
     done.legs.warn(err);
-    let drawing = drawing
-        .zip(picture)
-        .zip(done.plot)
-        .map(|((mut file, picture), plot)| {
-            let caption = caption(&summary);
-            picture.write(&plot.draw(&caption), &mut file)?;
-            Ok::<_, CliError>(file)
-        })
-        .transpose()?;
-    for file in file.into_iter().chain(drawing) {
-        file.commit()?;
+    if let (Some(drawing), Some(plot)) = (&mut files.drawing, done.plot) {
+        drawing.write(&plot.draw(&caption(&summary)))?;
     }
-    if to_stdout {
-        // The rows have standard output to themselves.
-        let mut text = Vec::new();
-        let code = report(&summary, false, &mut text, err)?;
-        let _ = err.write_all(&text);
-        return Ok(code);
+    if files.commit()? {
+        return show_beside_rows(&summary, err);
     }
-    report(&summary, args.job.json, out, err)
+    show(&summary, args.job.json, out, err)
 }
 
 fn caption(summary: &PoseSummary) -> Caption {
@@ -146,28 +113,6 @@ fn caption(summary: &PoseSummary) -> Caption {
                     .max(summary.orientation_corner_error_share),
         ),
     }
-}
-
-/// Prints what came out: JSON or text, and what is wrong with it.
-pub(super) fn report(
-    summary: &PoseSummary,
-    json: bool,
-    out: &mut dyn Write,
-    err: &mut dyn Write,
-) -> Result<u8, CliError> {
-    let text = if json {
-        summary.json()?
-    } else {
-        summary.text()
-    };
-    out.write_all(text.as_bytes())
-        .map_err(|reason| CliError::write("standard output", reason))?;
-    let _ = err.write_all(summary.complaint().as_bytes());
-    Ok(if summary.violations == 0 {
-        DONE
-    } else {
-        OUTSIDE
-    })
 }
 
 /// Everything that a motion passes through.

@@ -3,6 +3,7 @@
 //! Source: the report of the judge of poses. Not here: judging.
 
 use crate::setup::Setup;
+use crate::shown::{Shown, quoted, verdict};
 use crate::summary::clock;
 use serde::Serialize;
 use std::fmt::Write;
@@ -153,15 +154,33 @@ impl PoseSummary {
             .collect();
     }
 
-    /// The summary as one JSON object, with a line end.
-    pub(crate) fn json(&self) -> Result<String, serde_json::Error> {
-        let mut text = serde_json::to_string_pretty(self)?;
+    fn axes_table(&self, text: &mut String) {
+        text.push_str(
+            "axis         velocity, /s        acceleration, /s²       jerk, /s³               from, to\n",
+        );
+        for axis in &self.axes {
+            let cell = |peak: f64, limit: f64| format!("{peak:.1}  {:.1} %", 100.0 * peak / limit);
+            let _ = writeln!(
+                text,
+                "{:<12} {:<19} {:<23} {:<23} {:.2}, {:.2}",
+                format!("{}, {}", axis.axis, axis.unit),
+                cell(axis.peak_velocity, axis.velocity_limit),
+                cell(axis.peak_acceleration, axis.acceleration_limit),
+                cell(axis.peak_jerk, axis.jerk_limit),
+                axis.lowest,
+                axis.highest,
+            );
+        }
         text.push('\n');
-        Ok(text)
+    }
+}
+
+impl Shown for PoseSummary {
+    fn passes(&self) -> bool {
+        self.violations == 0
     }
 
-    /// The summary for a machinist.
-    pub(crate) fn text(&self) -> String {
+    fn text(&self) -> String {
         let mut text = String::new();
         let how = match &self.method {
             Some(method) => {
@@ -229,50 +248,11 @@ impl PoseSummary {
         if let Some(time) = self.planning_time_s {
             let _ = writeln!(text, "planned in   {time:.3} s");
         }
-        let verdict = match self.violations {
-            0 => "verdict      every limit and tolerance is kept".to_owned(),
-            1 => "verdict      NOT ALLOWED: 1 violation".to_owned(),
-            more => format!("verdict      NOT ALLOWED: {more} violations"),
-        };
-        let _ = writeln!(text, "{verdict}");
+        text.push_str(&verdict(self.violations));
         text
     }
 
-    fn axes_table(&self, text: &mut String) {
-        text.push_str(
-            "axis         velocity, /s        acceleration, /s²       jerk, /s³               from, to\n",
-        );
-        for axis in &self.axes {
-            let cell = |peak: f64, limit: f64| format!("{peak:.1}  {:.1} %", 100.0 * peak / limit);
-            let _ = writeln!(
-                text,
-                "{:<12} {:<19} {:<23} {:<23} {:.2}, {:.2}",
-                format!("{}, {}", axis.axis, axis.unit),
-                cell(axis.peak_velocity, axis.velocity_limit),
-                cell(axis.peak_acceleration, axis.acceleration_limit),
-                cell(axis.peak_jerk, axis.jerk_limit),
-                axis.lowest,
-                axis.highest,
-            );
-        }
-        text.push('\n');
-    }
-
-    /// What was broken, one line each; empty when nothing was.
-    pub(crate) fn complaint(&self) -> String {
-        let mut text = String::new();
-        for violation in &self.worst {
-            let _ = writeln!(text, "{}: {violation}", self.program);
-        }
-        let quoted = self.worst.len() as u64;
-        if self.violations > quoted {
-            let _ = writeln!(
-                text,
-                "{}: and {} more",
-                self.program,
-                self.violations - quoted
-            );
-        }
-        text
+    fn complaint(&self) -> String {
+        quoted(&self.program, &self.worst, self.violations)
     }
 }
