@@ -1,9 +1,9 @@
-//! What may be asked for on the command line, checked value by value.
+//! What may be asked for on the command line.
 //!
-//! Source: every quantity is positive and finite unless it is a coordinate. Not here: what a
-//! machine or a program makes of the values.
+//! Not here: how values are read, and what a machine or a program makes of them.
 
 use crate::planner::METHODS;
+use crate::values::{PerAxis, coordinates, mode, per_axis, positive};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -258,10 +258,6 @@ pub(crate) struct MachinesArgs {
     pub(crate) schema: bool,
 }
 
-/// One number for all axes, or one for each.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PerAxis(pub(crate) Vec<f64>);
-
 fn methods() -> PossibleValuesParser {
     PossibleValuesParser::new(
         METHODS
@@ -279,61 +275,6 @@ fn all_methods() -> PossibleValuesParser {
     )
 }
 
-fn number(text: &str) -> Result<f64, String> {
-    let value: f64 = text
-        .trim()
-        .parse()
-        .map_err(|_| format!("\"{text}\" is not a number"))?;
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(format!("{value} is not finite"))
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
-    if value > 0.0 {
-        Ok(value)
-    } else {
-        Err(format!("{value} is not positive"))
-    }
-}
-
-fn per_axis(text: &str) -> Result<PerAxis, String> {
-    text.split(',')
-        .map(positive)
-        .collect::<Result<_, _>>()
-        .map(PerAxis)
-}
-
-fn mode(text: &str) -> Result<ModeConfig, String> {
-    let mut parts = text.split(',').map(str::trim);
-    let mut letters = parts.next().unwrap_or_default().chars();
-    let (Some(axis), None) = (letters.next(), letters.next()) else {
-        return Err(format!(
-            "\"{text}\" does not begin with the letter of an axis"
-        ));
-    };
-    let frequency_hz = positive(parts.next().unwrap_or_default())?;
-    let damping = parts.next().map_or(Ok(0.0), number)?;
-    if let Some(more) = parts.next() {
-        return Err(format!("\"{more}\" is one number too many"));
-    }
-    Ok(ModeConfig {
-        axis: axis.to_ascii_uppercase(),
-        frequency_hz,
-        damping,
-    })
-}
-
-fn coordinates(text: &str) -> Result<PerAxis, String> {
-    text.split(',')
-        .map(number)
-        .collect::<Result<_, _>>()
-        .map(PerAxis)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -342,28 +283,5 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         CommandLine::command().debug_assert();
-    }
-
-    #[test]
-    fn limits_are_one_number_or_one_per_axis() {
-        assert_eq!(per_axis("500"), Ok(PerAxis(vec![500.0])));
-        assert_eq!(per_axis("1, 2,3e2"), Ok(PerAxis(vec![1.0, 2.0, 300.0])));
-        assert_eq!(coordinates("-1,0,2"), Ok(PerAxis(vec![-1.0, 0.0, 2.0])));
-    }
-
-    #[test]
-    fn what_is_not_positive_and_finite_is_refused_with_its_value() {
-        for (text, reason) in [
-            ("nan", "NaN is not finite"),
-            ("inf", "inf is not finite"),
-            ("0", "0 is not positive"),
-            ("-2", "-2 is not positive"),
-            ("1e999", "inf is not finite"),
-            ("", "\"\" is not a number"),
-            ("3mm", "\"3mm\" is not a number"),
-        ] {
-            assert_eq!(positive(text), Err(reason.to_owned()), "{text}");
-        }
-        assert!(per_axis("1,,2").is_err(), "an empty place");
     }
 }

@@ -33,6 +33,7 @@ mod summary;
 mod survey;
 mod table;
 mod travel;
+mod values;
 mod verify;
 
 pub use error::{CliError, DONE, INTERRUPTED, OUTSIDE, REFUSED};

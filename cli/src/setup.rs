@@ -2,8 +2,9 @@
 //!
 //! Not here: what the machine does with a tool pose.
 
-use crate::args::{JobArgs, PerAxis};
+use crate::args::JobArgs;
 use crate::error::CliError;
+use crate::values::PerAxis;
 use std::path::Path;
 use toolglide_kinematics::{
     Axis, AxisKind, AxisLimits, AxisVector, Limits, MachineKinematics, SamplePeriod, Tolerance,

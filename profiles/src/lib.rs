@@ -6,6 +6,7 @@
 //! knows no axes and no path: it works along one coordinate, in mm, s and rad.
 
 mod blend;
+mod connection;
 mod error;
 mod feed;
 mod jlap;
@@ -15,8 +16,9 @@ mod profile;
 mod rise;
 
 pub use blend::{BlendError, Blender, Boundary, CornerMotion};
+pub use connection::Connection;
 pub use error::ProfileError;
-pub use feed::{Connection, Feed};
+pub use feed::Feed;
 pub use jlap::Jlap;
 pub use phase::Phase;
 pub use piecewise::{Piecewise, Polynomial};
