@@ -9,7 +9,7 @@ use toolglide_kinematics::{Arc, Vector};
 
 /// Sagitta of a chord as a share of the tolerance: some seventeen chords are in the window of the
 /// filters where the tolerance limits the feedrate.
-const SAGITTA_SHARE: f64 = 0.02;
+const SAGITTA_SHARE: f64 = 0.08;
 
 /// The vertices of the chords of an arc, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,12 +20,24 @@ pub(crate) struct Chords<const N: usize> {
     outward: f64,
 }
 
+/// Largest radius of an arc, with what its change adds: the second derivative of the point after the
+/// angle.
+fn bending<const N: usize>(arc: &Arc<N>) -> f64 {
+    let (start_radius, end_radius) = arc.radii();
+    let growth = (end_radius - start_radius).abs() / arc.sweep().abs();
+    start_radius.max(end_radius) + 2.0 * growth
+}
+
+/// How far an arc is from its own chord at most: second derivative times square over eight.
+pub(crate) fn bulge_of<const N: usize>(arc: &Arc<N>) -> f64 {
+    0.125 * bending(arc) * arc.sweep() * arc.sweep()
+}
+
 impl<const N: usize> Chords<N> {
     pub(crate) fn new(arc: Arc<N>, tolerance: f64) -> Self {
         let (start_radius, end_radius) = arc.radii();
         let sweep = arc.sweep().abs();
-        let growth = (end_radius - start_radius).abs() / sweep;
-        let curvature = start_radius.max(end_radius) + 2.0 * growth;
+        let curvature = bending(&arc);
         let angle = (8.0 * SAGITTA_SHARE * tolerance / curvature)
             .sqrt()
             .min(FRAC_PI_4);

@@ -14,6 +14,7 @@ mod cubic;
 mod error;
 mod kernel;
 mod lookahead;
+mod merge;
 mod mode;
 mod planner;
 mod pulse;

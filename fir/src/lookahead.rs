@@ -38,6 +38,8 @@ pub(crate) struct LookAhead<const N: usize> {
     /// Largest change of velocity of each axis within the window.
     change: Vector<N>,
     pulses: Vec<Pulse<N>>,
+    /// What the pulses were before a trial.
+    kept: Vec<Pulse<N>>,
     /// How many of them were handed out.
     fixed: usize,
     schedule: Schedule,
@@ -53,6 +55,7 @@ impl<const N: usize> LookAhead<N> {
             chain,
             change,
             pulses: Vec::with_capacity(capacity),
+            kept: Vec::with_capacity(capacity),
             fixed: 0,
             schedule: Schedule::with_capacity(capacity),
             dirty: Vec::with_capacity(capacity),
@@ -161,17 +164,32 @@ impl<const N: usize> LookAhead<N> {
         if planned <= moving + dwelling {
             return;
         }
-        for index in self.fixed..=last {
-            self.pulses[index].feed = self.pulses[index].limit;
-        }
-        for index in first..last {
+        self.kept.clear();
+        self.kept.extend_from_slice(&self.pulses);
+        let mut stopped = false;
+        for index in first..=last {
             let pulse = &mut self.pulses[index];
+            if stopped {
+                pulse.feed = pulse.limit;
+            }
+            if index == last {
+                break;
+            }
             if is_corner(pulse) {
                 pulse.pass = false;
                 pulse.overlap = 0.0;
+                stopped = true;
+            } else if stopped {
+                // An arc by itself.
+                pulse.pass = true;
+                pulse.overlap = total;
             }
         }
         self.time();
+        if self.schedule.end(last) - end > planned {
+            std::mem::swap(&mut self.pulses, &mut self.kept);
+            self.time();
+        }
     }
 
     fn allowed(&self, corner: usize) -> f64 {

@@ -2,10 +2,11 @@
 //!
 //! Source: sections 4.2 and 4.3. Not here: any formula; see the chain, the look-ahead and the sweep.
 
-use crate::chords::Chords;
+use crate::chords::{Chords, bulge_of};
 use crate::circle::angular_velocity;
 use crate::cubic::CubicChain;
 use crate::lookahead::LookAhead;
+use crate::merge::{Leg, MERGE_SHARE, Merger, Vertex};
 use crate::pulse::Pulse;
 use crate::settings::{Method, Settings, largest_change, time_constants};
 use crate::sweep::{Command, Sweep};
@@ -22,7 +23,7 @@ const COMMANDS: usize = 1024;
 const LINE_SHARE: f64 = 0.9999;
 
 /// The same for arcs, whose chords leave a ripple behind the filters.
-const ARC_SHARE: f64 = 0.998;
+const ARC_SHARE: f64 = 0.996;
 
 /// By how much the bound may exceed the tolerance in the middle of an arc, where it is larger than the
 /// distance itself; what is beyond the tolerance is what [`ARC_SHARE`] leaves.
@@ -55,10 +56,7 @@ pub struct FirInterpolation<const N: usize> {
     change: Vector<N>,
     /// Where the programmed path has come to.
     position: Vector<N>,
-    /// Where the pulses have come to.
-    anchor: Vector<N>,
-    /// Moves that led nowhere and that no pulse has served.
-    carried: Option<Serves>,
+    merger: Merger<N>,
     index: u32,
     finished: bool,
     arc: Option<ArcUnderWay<N>>,
@@ -94,8 +92,7 @@ impl<const N: usize> FirInterpolation<N> {
             class: fastest,
             change,
             position: start,
-            anchor: start,
-            carried: None,
+            merger: Merger::new(start),
             index: 0,
             finished: false,
             arc: None,
@@ -115,7 +112,7 @@ impl<const N: usize> FirInterpolation<N> {
         if fits {
             return;
         }
-        self.rest();
+        self.come_to_rest();
         self.class = feed;
         let (long, short) = time_constants(&self.limits, feed);
         self.chain = CubicChain::of_two(long, short);
@@ -130,55 +127,67 @@ impl<const N: usize> FirInterpolation<N> {
     }
 
     fn rest(&mut self) {
-        let sweep = &mut self.sweep;
-        self.look.rest(&mut |command| sweep.push(command));
-        if let Some(serves) = self.carried.take() {
-            sweep.push(Command::Pause {
+        self.flush();
+        self.come_to_rest();
+        if let Some(serves) = self.merger.take_carried() {
+            self.sweep.push(Command::Pause {
                 duration: 0.0,
                 serves,
             });
         }
     }
 
-    /// A straight pulse from where the pulses have come to.
-    fn add(&mut self, mut pulse: Pulse<N>) {
-        if let Some(carried) = self.carried.take() {
-            pulse.serves.first = carried.first;
+    /// What has become pulses comes to rest.
+    fn come_to_rest(&mut self) {
+        let sweep = &mut self.sweep;
+        self.look.rest(&mut |command| sweep.push(command));
+    }
+
+    /// The leg under way becomes a pulse.
+    fn flush(&mut self) {
+        let from = self.merger.anchor();
+        if let Some(leg) = self.merger.flush() {
+            self.leg(from, &leg);
         }
-        self.anchor = pulse.to;
+    }
+
+    fn add(&mut self, pulse: Pulse<N>) {
         let sweep = &mut self.sweep;
         self.look.push(pulse, &mut |command| sweep.push(command));
     }
 
-    fn carry(&mut self, serves: Serves) {
-        let first = self.carried.map_or(serves.first, |carried| carried.first);
-        self.carried = Some(Serves {
-            first,
-            last: serves.last,
-        });
-    }
-
-    fn line(&mut self, end: Vector<N>, step: &Move<N>, serves: Serves) {
-        if (end - self.anchor).norm() <= SHORTEST_LENGTH {
-            self.carry(serves);
-            return;
-        }
-        let feedrate = step.feedrate().speed();
-        self.choose(feedrate);
-        let tolerance = LINE_SHARE * step.tolerance().length();
-        let mut pulse = Pulse::between((self.anchor, end), feedrate, tolerance, serves);
-        pulse.limit = self.limit_along(&pulse.direction, feedrate);
+    fn leg(&mut self, from: Vector<N>, leg: &Leg<N>) {
+        self.choose(leg.feedrate);
+        let tolerance = LINE_SHARE * leg.room;
+        let mut pulse = Pulse::between((from, leg.end), leg.feedrate, tolerance, leg.serves);
+        pulse.limit = self.limit_along(&pulse.direction, leg.feedrate);
         pulse.feed = pulse.limit;
         self.add(pulse);
     }
 
+    /// The end of a straight stretch that strays from the path by `bulge`.
+    fn vertex(&mut self, point: Vector<N>, bulge: f64, step: &Move<N>, serves: Serves) {
+        let from = self.merger.anchor();
+        let leg = self.merger.push(Vertex {
+            point,
+            bulge,
+            feedrate: step.feedrate().speed().min(self.limits.velocity().norm()),
+            tolerance: step.tolerance().length(),
+            serves,
+        });
+        if let Some(leg) = leg {
+            self.leg(from, &leg);
+        }
+    }
+
     fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, serves: Serves) {
+        self.flush();
         let feedrate = step.feedrate().speed();
         self.choose(feedrate);
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
         let mut limit = self.arc_limit(arc, feedrate, tolerance);
-        let mut from = self.anchor;
+        let mut from = self.merger.anchor();
         for vertex in chords.vertices() {
             let span = vertex - from;
             let length = span.norm();
@@ -260,11 +269,14 @@ impl<const N: usize> FirInterpolation<N> {
                     serves,
                     ..
                 } = *under_way;
-                if (vertex - self.anchor).norm() <= SHORTEST_LENGTH {
-                    self.carry(serves);
+                let from = self.merger.anchor();
+                if (vertex - from).norm() <= SHORTEST_LENGTH {
+                    self.merger.carry(serves, 0.0, tolerance);
                     return true;
                 }
-                let mut pulse = Pulse::between((self.anchor, vertex), limit, tolerance, serves);
+                let serves = self.merger.serve(serves);
+                self.merger.go_to(vertex);
+                let mut pulse = Pulse::between((from, vertex), limit, tolerance, serves);
                 pulse.smooth = more;
                 pulse.steady = steady;
                 pulse.bulge = bulge;
@@ -298,12 +310,22 @@ impl<const N: usize> MotionPlanner<N> for FirInterpolation<N> {
         };
         match next.path() {
             Path::Line { end } => {
-                self.line(*end, next, serves);
+                self.vertex(*end, 0.0, next, serves);
                 if next.stops() || self.method == Method::PointToPoint {
                     self.rest();
                 }
             }
-            Path::Arc(arc) => self.begin_arc(arc, next, serves),
+            Path::Arc(arc) => {
+                let bulge = bulge_of(arc);
+                if bulge <= MERGE_SHARE * next.tolerance().length() {
+                    self.vertex(arc.end(), bulge, next, serves);
+                    if next.stops() || self.method == Method::PointToPoint {
+                        self.rest();
+                    }
+                } else {
+                    self.begin_arc(arc, next, serves);
+                }
+            }
             Path::Dwell { duration } => {
                 self.rest();
                 self.sweep.push(Command::Pause {
