@@ -29,12 +29,19 @@ pub(crate) struct Tooth {
     pub(crate) weight: f64,
 }
 
+/// The comb of a chain of two filters.
+const NO_COMB: [Tooth; 1] = [Tooth {
+    delay: 0.0,
+    weight: 1.0,
+}];
+
 /// Two moving averages and a comb.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CubicChain {
     long: f64,
     short: f64,
     total: f64,
+    /// Empty for two filters, which then need no memory of their own.
     comb: Vec<Tooth>,
 }
 
@@ -45,10 +52,7 @@ impl CubicChain {
             long: long.max(short),
             short: short.min(long),
             total: long + short,
-            comb: vec![Tooth {
-                delay: 0.0,
-                weight: 1.0,
-            }],
+            comb: Vec::new(),
         }
     }
 
@@ -67,7 +71,6 @@ impl CubicChain {
             return Ok(two);
         }
         let rest = FilterChain::with_time_constants(rest)?;
-        two.comb.clear();
         let width = rest.total_delay() / f64::from(TEETH);
         for tooth in 0..TEETH {
             let begin = f64::from(tooth) * width;
@@ -110,7 +113,7 @@ impl CubicChain {
     pub(crate) fn variance(&self) -> f64 {
         let middle = 0.5 * (self.total - self.long - self.short);
         let comb: f64 = self
-            .comb
+            .comb()
             .iter()
             .map(|tooth| tooth.weight * (tooth.delay - middle).powi(2))
             .sum();
@@ -129,7 +132,7 @@ impl CubicChain {
         };
         let middle = 0.5 * (self.total - self.long - self.short);
         let comb: f64 = self
-            .comb
+            .comb()
             .iter()
             .map(|tooth| tooth.weight * (angular_frequency * (tooth.delay - middle)).cos())
             .sum();
@@ -137,7 +140,11 @@ impl CubicChain {
     }
 
     pub(crate) fn comb(&self) -> &[Tooth] {
-        &self.comb
+        if self.comb.is_empty() {
+            &NO_COMB
+        } else {
+            &self.comb
+        }
     }
 
     /// Position after a unit step of velocity.
@@ -170,7 +177,7 @@ impl CubicChain {
         if position >= 0.5 * total {
             return position + 0.5 * total;
         }
-        if self.comb.len() == 1 {
+        if self.comb.is_empty() {
             let cubic = (6.0 * long * short * position).cbrt();
             if cubic <= short {
                 return cubic;
@@ -206,7 +213,7 @@ impl CubicChain {
     }
 
     fn over_comb(&self, time: f64, response: impl Fn(&Self, f64) -> f64) -> f64 {
-        if let [_] = self.comb[..] {
+        if self.comb.is_empty() {
             return response(self, time);
         }
         self.comb

@@ -5,13 +5,16 @@
 //! feedrates; the bound over the whole window and what is done about it are ours. Not here: the
 //! bound itself, and what is done where it is broken, see the correction.
 
+mod choice;
 mod correction;
 
+use crate::bend::{Bend, Pace};
 use crate::bound::Schedule;
 use crate::cubic::CubicChain;
 use crate::pulse::Pulse;
+use crate::settings::{designed_for, largest_change};
 use crate::sweep::{Command, TimedPulse};
-use toolglide_kinematics::Vector;
+use toolglide_kinematics::{Limits, Vector};
 
 /// Pulses that wait before the first half of them is handed out.
 const PENDING: usize = 128;
@@ -34,10 +37,17 @@ const PASSING_PRECISION: f64 = 0.005;
 /// Where pulses wait for their times.
 #[derive(Clone, Debug)]
 pub(crate) struct LookAhead<const N: usize> {
+    limits: Limits<N>,
+    /// Whether the chain is chosen.
+    chosen: bool,
     chain: CubicChain,
     /// Largest change of velocity of each axis within the window.
     change: Vector<N>,
     pulses: Vec<Pulse<N>>,
+    /// The arc whose pace was found last, with its feedrate.
+    bend: Option<(Bend<N>, f64, Pace)>,
+    /// What waited before chains were tried.
+    waiting: Vec<Pulse<N>>,
     /// What the pulses were before a trial.
     kept: Vec<Pulse<N>>,
     /// How many of them were handed out.
@@ -49,11 +59,19 @@ pub(crate) struct LookAhead<const N: usize> {
 }
 
 impl<const N: usize> LookAhead<N> {
-    pub(crate) fn new(chain: CubicChain, change: Vector<N>) -> Self {
+    /// Nothing waits; without a chain, time constants are chosen whenever motion begins.
+    pub(crate) fn new(limits: Limits<N>, chain: Option<CubicChain>) -> Self {
         let capacity = 4 * (PENDING + CONTEXT);
+        let chosen = chain.is_none();
+        let fastest = limits.velocity().max();
+        let chain = chain.unwrap_or_else(|| designed_for(&limits, fastest));
         Self {
+            change: largest_change(&limits, &chain),
+            limits,
+            chosen,
             chain,
-            change,
+            bend: None,
+            waiting: Vec::with_capacity(capacity),
             pulses: Vec::with_capacity(capacity),
             kept: Vec::with_capacity(capacity),
             fixed: 0,
@@ -64,11 +82,9 @@ impl<const N: usize> LookAhead<N> {
         }
     }
 
-    /// Other filters from here on; only when nothing waits.
-    pub(crate) fn set_chain(&mut self, chain: CubicChain, change: Vector<N>) {
-        debug_assert!(self.pulses.is_empty(), "filters change only at rest");
-        self.chain = chain;
-        self.change = change;
+    /// The filters that are in use.
+    pub(crate) fn chain(&self) -> &CubicChain {
+        &self.chain
     }
 
     /// Takes the next pulse; what is decided goes to `out`.
@@ -77,8 +93,9 @@ impl<const N: usize> LookAhead<N> {
             before.turn = (pulse.direction - before.direction).norm();
         }
         self.pulses.push(pulse);
+        self.limit(self.pulses.len() - 1);
         if self.pulses.len() - self.fixed >= PENDING {
-            self.solve();
+            self.decide(out);
             let half = self.fixed + PENDING / 2;
             self.hand_out(half, out);
             if self.fixed > CONTEXT {
@@ -93,7 +110,7 @@ impl<const N: usize> LookAhead<N> {
             return;
         }
         if self.pulses.len() > self.fixed {
-            self.solve();
+            self.decide(out);
             self.hand_out(self.pulses.len(), out);
         }
         self.pulses.clear();

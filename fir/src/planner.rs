@@ -2,13 +2,12 @@
 //!
 //! Source: sections 4.2 and 4.3. Not here: any formula; see the chain, the look-ahead and the sweep.
 
+use crate::bend::Bend;
 use crate::chords::{Chords, bulge_of};
-use crate::circle::angular_velocity;
-use crate::cubic::CubicChain;
 use crate::lookahead::LookAhead;
 use crate::merge::{Leg, MERGE_SHARE, Merger, Vertex};
 use crate::pulse::Pulse;
-use crate::settings::{Method, Settings, largest_change, time_constants};
+use crate::settings::{Method, Settings};
 use crate::sweep::{Command, Sweep};
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{
@@ -25,11 +24,7 @@ const LINE_SHARE: f64 = 0.9999;
 /// The same for arcs, whose chords leave a ripple behind the filters.
 const ARC_SHARE: f64 = 0.996;
 
-/// By how much the bound may exceed the tolerance in the middle of an arc, where it is larger than the
-/// distance itself; what is beyond the tolerance is what [`ARC_SHARE`] leaves.
-const STEADY_EXCESS: f64 = 1.0015;
-
-/// Feedrates within this factor share their time constants.
+/// Programmed feedrates that differ by more than this factor do not share their time constants.
 const SAME_CLASS: f64 = 2.0;
 
 /// Plans filtered pulses while the path is being read.
@@ -48,12 +43,10 @@ const SAME_CLASS: f64 = 2.0;
 pub struct FirInterpolation<const N: usize> {
     limits: Limits<N>,
     method: Method,
-    /// Whether the time constants follow the feedrate.
+    /// Whether the time constants are chosen.
     chosen: bool,
-    /// Feedrate that the time constants were chosen for.
+    /// Programmed feedrate since the motion was last at rest for other time constants.
     class: f64,
-    chain: CubicChain,
-    change: Vector<N>,
     /// Where the programmed path has come to.
     position: Vector<N>,
     merger: Merger<N>,
@@ -67,9 +60,9 @@ pub struct FirInterpolation<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 struct ArcUnderWay<const N: usize> {
     chords: Chords<N>,
-    limit: f64,
+    bend: Bend<N>,
+    feedrate: f64,
     tolerance: f64,
-    steady: f64,
     serves: Serves,
     stops: bool,
 }
@@ -78,52 +71,29 @@ impl<const N: usize> FirInterpolation<N> {
     /// A planner whose motion begins at rest at `start`.
     #[must_use]
     pub fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
-        let chosen = settings.chain.is_none();
-        let fastest = settings.limits.velocity().max();
-        let chain = settings.chain.clone().unwrap_or_else(|| {
-            let (long, short) = time_constants(&settings.limits, fastest);
-            CubicChain::of_two(long, short)
-        });
-        let change = largest_change(&settings.limits, &chain);
+        let look = LookAhead::new(settings.limits, settings.chain.clone());
         Self {
             limits: settings.limits,
             method: settings.method,
-            chosen,
-            class: fastest,
-            change,
+            chosen: settings.chain.is_none(),
+            class: settings.limits.velocity().max(),
             position: start,
             merger: Merger::new(start),
             index: 0,
             finished: false,
             arc: None,
-            look: LookAhead::new(chain.clone(), change),
-            sweep: Sweep::new(start, chain.clone(), COMMANDS),
-            chain,
+            sweep: Sweep::new(start, look.chain().clone(), COMMANDS),
+            look,
         }
     }
 
-    /// Other time constants where the feedrate asks for them.
+    /// Comes to rest for other time constants where the feedrate asks for them.
     fn choose(&mut self, feed: f64) {
-        if !self.chosen {
-            return;
-        }
         let feed = feed.min(self.limits.velocity().norm());
-        let fits = feed <= self.class * (1.0 + f64::EPSILON) && feed * SAME_CLASS > self.class;
-        if fits {
-            return;
+        if self.chosen && !(feed <= self.class * SAME_CLASS && self.class <= feed * SAME_CLASS) {
+            self.come_to_rest();
+            self.class = feed;
         }
-        self.come_to_rest();
-        self.class = feed;
-        let (long, short) = time_constants(&self.limits, feed);
-        self.chain = CubicChain::of_two(long, short);
-        self.change = largest_change(&self.limits, &self.chain);
-        self.look.set_chain(self.chain.clone(), self.change);
-        self.sweep.push(Command::Filters { long, short });
-    }
-
-    /// Largest feedrate along a direction.
-    fn limit_along(&self, direction: &Vector<N>, feedrate: f64) -> f64 {
-        largest_multiple(direction, &self.change.inf(self.limits.velocity())).min(feedrate)
     }
 
     fn rest(&mut self) {
@@ -160,8 +130,8 @@ impl<const N: usize> FirInterpolation<N> {
         self.choose(leg.feedrate);
         let tolerance = LINE_SHARE * leg.room;
         let mut pulse = Pulse::between((from, leg.end), leg.feedrate, tolerance, leg.serves);
-        pulse.limit = self.limit_along(&pulse.direction, leg.feedrate);
-        pulse.feed = pulse.limit;
+        let most = largest_multiple(&pulse.direction, self.limits.velocity());
+        pulse.feedrate = pulse.feedrate.min(most);
         self.add(pulse);
     }
 
@@ -186,68 +156,15 @@ impl<const N: usize> FirInterpolation<N> {
         self.choose(feedrate);
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
-        let mut limit = self.arc_limit(arc, feedrate, tolerance);
-        let mut from = self.merger.anchor();
-        for vertex in chords.vertices() {
-            let span = vertex - from;
-            let length = span.norm();
-            if length > SHORTEST_LENGTH {
-                limit = limit.min(self.limit_along(&(span / length), feedrate));
-            }
-            from = vertex;
-        }
-        let steady = self
-            .steady_bound(&chords, limit)
-            .min(STEADY_EXCESS * tolerance);
+        let bend = Bend::new(arc, &chords, tolerance);
         self.arc = Some(ArcUnderWay {
             chords,
-            limit,
+            bend,
+            feedrate: feedrate.min(bend.largest_feed(self.limits.velocity())),
             tolerance,
-            steady,
             serves,
             stops: step.stops(),
         });
-    }
-
-    /// The feedrate that the tolerance of an arc and its centripetal acceleration leave.
-    fn arc_limit(&self, arc: &Arc<N>, feedrate: f64, tolerance: f64) -> f64 {
-        let (start_radius, end_radius) = arc.radii();
-        let radius = start_radius.max(end_radius);
-        // Of the way, the part that turns.
-        let turning = radius * arc.sweep().abs() / arc.length();
-        let chain = &self.chain;
-        let slow = (2.0 * tolerance / (radius * chain.variance())).sqrt();
-        let mut angular = slow * STEADY_EXCESS.sqrt();
-        if tolerance < radius {
-            let notch = std::f64::consts::TAU / chain.long();
-            let share = tolerance / radius;
-            angular = angular.min(angular_velocity(|w| chain.gain(w), share, slow, notch));
-        }
-        // The change of velocity within the longest time constant is at most what an axis may have.
-        let (radial, lateral) = arc.frame();
-        for axis in 0..N {
-            let share = radial[axis].hypot(lateral[axis]);
-            if share > 0.0 {
-                let acceleration = self.change[axis] / chain.long();
-                angular = angular.min((acceleration / (radius * share)).sqrt());
-            }
-        }
-        feedrate.min(angular * radius / turning)
-    }
-
-    /// What the bound comes to in the middle of an arc.
-    fn steady_bound(&self, chords: &Chords<N>, feed: f64) -> f64 {
-        let chain = &self.chain;
-        let half = 0.5 * chain.total();
-        let turn = 2.0 * (0.5 * chords.angle()).sin();
-        let step = chords.longest() / feed;
-        let mut sum = 0.5 * chain.position(half);
-        let mut distance = step;
-        while distance < half {
-            sum += chain.position(half - distance);
-            distance += step;
-        }
-        2.0 * turn * feed * sum
     }
 
     /// Takes the next chord of the arc under way; `false` when there is none.
@@ -263,9 +180,9 @@ impl<const N: usize> FirInterpolation<N> {
                     0.0
                 };
                 let ArcUnderWay {
-                    limit,
+                    bend,
+                    feedrate,
                     tolerance,
-                    steady,
                     serves,
                     ..
                 } = *under_way;
@@ -276,9 +193,9 @@ impl<const N: usize> FirInterpolation<N> {
                 }
                 let serves = self.merger.serve(serves);
                 self.merger.go_to(vertex);
-                let mut pulse = Pulse::between((from, vertex), limit, tolerance, serves);
+                let mut pulse = Pulse::between((from, vertex), feedrate, tolerance, serves);
                 pulse.smooth = more;
-                pulse.steady = steady;
+                pulse.bend = Some(bend);
                 pulse.bulge = bulge;
                 self.add(pulse);
             }

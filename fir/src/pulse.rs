@@ -3,6 +3,7 @@
 //! Source: section 4.2, where a block is a rectangular pulse; arcs are sequences of chords here. Not
 //! here: its filtered motion.
 
+use crate::bend::Bend;
 use toolglide_kinematics::{Serves, Vector};
 
 /// A straight stretch at constant commanded feedrate, and the corner at its end.
@@ -12,7 +13,11 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) to: Vector<N>,
     pub(crate) direction: Vector<N>,
     pub(crate) length: f64,
-    /// Largest feedrate.
+    /// Largest feedrate that the program and the axes leave.
+    pub(crate) feedrate: f64,
+    /// The arc that it is part of.
+    pub(crate) bend: Option<Bend<N>>,
+    /// Largest feedrate behind the chain.
     pub(crate) limit: f64,
     /// How far the motion may be from the stretch.
     pub(crate) tolerance: f64,
@@ -41,7 +46,7 @@ impl<const N: usize> Pulse<N> {
     /// A pulse between two different points.
     pub(crate) fn between(
         (from, to): (Vector<N>, Vector<N>),
-        limit: f64,
+        feedrate: f64,
         tolerance: f64,
         serves: Serves,
     ) -> Self {
@@ -52,13 +57,15 @@ impl<const N: usize> Pulse<N> {
             to,
             direction: span / length,
             length,
-            limit,
+            feedrate,
+            bend: None,
+            limit: feedrate,
             tolerance,
             smooth: false,
             steady: 0.0,
             bulge: 0.0,
             serves,
-            feed: limit,
+            feed: feedrate,
             gap: 0.0,
             overlap: 0.0,
             turn: 0.0,

@@ -88,12 +88,12 @@ pub(crate) fn largest_change<const N: usize>(limits: &Limits<N>, chain: &CubicCh
     (limits.acceleration() * long).inf(&(limits.jerk() * (0.5 * long * short))) * ROUNDING
 }
 
-/// Time constants with which every axis may step to its share of a feedrate.
+/// The chain with which every axis may step to its share of a feedrate, and to no more.
 ///
 /// # Source
-/// Section 4.2.2: the longest from the acceleration, the other from the jerk, twice as long because
-/// ramps of two steps may coincide.
-pub(crate) fn time_constants<const N: usize>(limits: &Limits<N>, feed: f64) -> (f64, f64) {
+/// Section 4.2.2: the longest time constant from the acceleration, the other from the jerk, twice as
+/// long because ramps of two steps may coincide.
+pub(crate) fn designed_for<const N: usize>(limits: &Limits<N>, feed: f64) -> CubicChain {
     let (mut longest, mut product) = (0.0_f64, 0.0_f64);
     for axis in 0..N {
         let velocity = feed.min(limits.velocity()[axis]);
@@ -101,5 +101,5 @@ pub(crate) fn time_constants<const N: usize>(limits: &Limits<N>, feed: f64) -> (
         product = product.max(2.0 * velocity / limits.jerk()[axis]);
     }
     let longest = longest.max(product.sqrt());
-    (longest / ROUNDING, product / longest / ROUNDING)
+    CubicChain::of_two(longest / ROUNDING, product / longest / ROUNDING)
 }
