@@ -43,19 +43,17 @@ enum Rule {
 }
 
 /// Overlaps at all corners, inside both tolerances; blocks become slower where that costs less.
+///
+/// Only what is near a block or a corner that has changed is settled again.
 pub(crate) fn settle(
     blocks: &mut [PoseBlock],
     corners: &[PoseCorner],
     scales: &[f64],
     chain: &FilterChain,
-) -> Vec<f64> {
+    changed: &[bool],
+    overlaps: &mut [f64],
+) {
     let delay = chain.total_delay();
-    let mut overlaps: Vec<f64> = corners
-        .iter()
-        .zip(blocks.windows(2))
-        .zip(scales)
-        .map(|((corner, pair), scale)| scale * corner.overlap(&pair[0], &pair[1], chain))
-        .collect();
     // A block as long as the delay keeps what is before it from what is after it.
     let mut first = 0;
     while first + 1 < blocks.len() {
@@ -63,19 +61,25 @@ pub(crate) fn settle(
         while last + 1 < blocks.len() && blocks[last].duration < delay {
             last += 1;
         }
-        let crowded = (first + 1..last)
-            .any(|index| overlaps[index - 1] + overlaps[index] > blocks[index].duration + delay);
-        if crowded {
-            let run = Run {
-                corners: &corners[first..last],
-                scales: &scales[first..last],
-                chain,
-            };
-            run.settle(&mut blocks[first..=last], &mut overlaps[first..last]);
+        if changed[first..=last].iter().any(|changed| *changed) {
+            for index in first..last {
+                let [before, after] = [&blocks[index], &blocks[index + 1]];
+                overlaps[index] = scales[index] * corners[index].overlap(before, after, chain);
+            }
+            let crowded = (first + 1..last).any(|index| {
+                overlaps[index - 1] + overlaps[index] > blocks[index].duration + delay
+            });
+            if crowded {
+                let run = Run {
+                    corners: &corners[first..last],
+                    scales: &scales[first..last],
+                    chain,
+                };
+                run.settle(&mut blocks[first..=last], &mut overlaps[first..last]);
+            }
         }
         first = last;
     }
-    overlaps
 }
 
 /// Short blocks in a row, with a long one, or none, on either side.

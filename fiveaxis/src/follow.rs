@@ -1,40 +1,36 @@
-//! What the axes of a machine do behind a piece of tool motion.
+//! What the axes of a machine do behind a piece of tool motion, bounded at every instant.
 //!
-//! Source: central differences of the inverse kinematics along the polynomials of the piece, which
-//! go on beyond its ends, so that a piece may be as short as it likes. Not here: what is done about
-//! it.
+//! Source: ours. The inverse kinematics along the polynomials of the piece is interpolated, and
+//! the series bounds the derivatives between the instants, too; what the series leaves out is
+//! counted with what its last coefficients add. Where that is too much the stretch is halved. Not here:
+//! what is done about it.
 
+use crate::series::{AT_NODES, NODES, bound, falls, last, slope, through_nodes, value};
 use toolglide_kinematics::{
-    Axis, AxisKind, AxisVector, KinematicsError, MachineKinematics, ToolPiece,
+    Axis, AxisVector, KinematicsError, MOST_AXES, MachineKinematics, ToolPiece,
 };
 
-/// Distance of the instants of a difference, s: the rounding of positions of a metre leaves less than
-/// 1 mm/s³ of a jerk, and a motion that changes within such a time is none for a machine.
-const STEP: f64 = 1e-3;
+/// Shorter stretches are interpolated beyond their ends, s: the rounding of positions of a metre leaves
+/// less than 1 mm/s³ of a jerk, and a motion that changes within such a time is none for a machine.
+const LEAST_HALF: f64 = 3e-3;
 
-/// Differences of seven instants: velocity, acceleration and jerk.
-const VELOCITY: [f64; 7] = [-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0];
-const VELOCITY_SCALE: f64 = 60.0;
-const ACCELERATION: [f64; 7] = [2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0];
-const ACCELERATION_SCALE: f64 = 180.0;
-const JERK: [f64; 7] = [1.0, -8.0, 13.0, 0.0, -13.0, 8.0, -1.0];
-const JERK_SCALE: f64 = 8.0;
+/// A share of a limit below which the value itself does not matter.
+const FREE: f64 = 0.99;
 
-/// Longest time and largest angle between two instants looked at, s and rad.
-const LONGEST: f64 = 0.02;
-const WIDEST: f64 = 0.05;
+/// A bound that is above what is attained by this factor at most is taken for it.
+const TIGHT: f64 = 1.002;
 
-/// Most instants of a piece at a first look.
-const MOST_PARTS: f64 = 64.0;
+/// A limit that is exceeded so much is not looked at more closely.
+const PLENTY: f64 = 1.3;
 
-/// A piece that comes so near to a limit is looked at again, at so many times the instants.
-const CLOSE: f64 = 0.7;
-const FINER: f64 = 8.0;
+/// What a series may leave out before it is not believed, as a share of a limit.
+const BELIEVED: f64 = 0.1;
 
-/// Largest turn of a rotary axis from one instant to the next, rad: where it turns further, as C does
-/// beside the pole, it is looked at again in finer steps, but not in more than so many.
-const STRIDE: f64 = 0.05;
-const FINEST: f64 = 1024.0;
+/// What the last coefficients may add to a position, mm and rad.
+const RESOLVED: f64 = 1e-5;
+
+/// Stretches are halved down to this, s.
+const SHORTEST: f64 = 1e-3;
 
 /// The limit that is exceeded most: by how much, on which axis, and which.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,11 +50,7 @@ impl Worst {
     };
 
     pub(crate) fn raise(&mut self, axis: usize, limits: &Axis, derivatives: [f64; 3]) {
-        let bounds = [
-            limits.limits.velocity(),
-            limits.limits.acceleration(),
-            limits.limits.jerk(),
-        ];
+        let bounds = bounds(limits);
         for (order, (value, bound)) in derivatives.iter().zip(bounds).enumerate() {
             let share = value.abs() / bound;
             if share > self.share {
@@ -73,83 +65,103 @@ impl Worst {
     }
 }
 
-/// The limit of an axis that a piece comes nearest to, or exceeds most.
+pub(crate) fn bounds(axis: &Axis) -> [f64; 3] {
+    let limits = &axis.limits;
+    [limits.velocity(), limits.acceleration(), limits.jerk()]
+}
+
+/// The limit of an axis that a piece comes nearest to, or exceeds most. The share is a bound.
 pub(crate) fn worst(
     machine: &dyn MachineKinematics,
     axes: &[Axis],
     piece: &ToolPiece,
     near: &AxisVector,
 ) -> Result<Worst, KinematicsError> {
-    let swing: f64 = piece
-        .turns
-        .iter()
-        .map(|turn| (turn.angle[1] * piece.duration).abs())
-        .sum();
-    let mut parts = (piece.duration / LONGEST)
-        .max(swing / WIDEST)
-        .ceil()
-        .clamp(2.0, MOST_PARTS);
-    loop {
-        let (found, stride) = at_instants(machine, axes, piece, near, parts)?;
-        if stride > STRIDE && parts < FINEST {
-            parts = (parts * FINER).min(FINEST);
-        } else if found.share < CLOSE || parts >= FINEST {
-            return Ok(found);
-        } else {
-            let (finer, _) = at_instants(machine, axes, piece, near, FINER * parts)?;
-            return Ok(finer);
-        }
-    }
+    let mut look = Look {
+        machine,
+        axes,
+        piece,
+        near: *near,
+        worst: Worst::NONE,
+    };
+    look.stretch([0.0, piece.duration])?;
+    Ok(look.worst)
 }
 
-/// The same at equal steps of time, and the largest turn of a rotary axis in a step.
-fn at_instants(
-    machine: &dyn MachineKinematics,
-    axes: &[Axis],
-    piece: &ToolPiece,
-    near: &AxisVector,
-    parts: f64,
-) -> Result<(Worst, f64), KinematicsError> {
-    let mut worst = Worst::NONE;
-    let mut near = *near;
-    let mut stride = 0.0_f64;
-    let mut part = 0.0;
-    while part <= parts {
-        let time = piece.duration * part / parts;
-        let here = machine.follow(&piece.extended(time), &near)?;
-        for (axis, (now, then)) in axes.iter().zip(here.iter().zip(near.iter())) {
-            if part > 0.0 && axis.kind == AxisKind::Rotary {
-                stride = stride.max((now - then).abs());
+/// A look at a piece.
+struct Look<'a> {
+    machine: &'a dyn MachineKinematics,
+    axes: &'a [Axis],
+    piece: &'a ToolPiece,
+    near: AxisVector,
+    worst: Worst,
+}
+
+impl Look<'_> {
+    fn halves(&mut self, [begin, middle, end]: [f64; 3]) -> Result<(), KinematicsError> {
+        self.stretch([begin, middle])?;
+        self.stretch([middle, end])
+    }
+
+    fn stretch(&mut self, [begin, end]: [f64; 2]) -> Result<(), KinematicsError> {
+        let middle = 0.5 * (begin + end);
+        let half = (0.5 * (end - begin)).max(LEAST_HALF);
+        let width = 0.5 * (end - begin) / half;
+        let before = self.near;
+        let mut values = [[0.0; NODES]; MOST_AXES];
+        let mut near = before;
+        for (node, at) in AT_NODES.iter().enumerate() {
+            let pose = self.piece.extended(middle + half * at);
+            near = match self.machine.follow(&pose, &near) {
+                Ok(next) => next,
+                // Looked at too rarely, an axis beside a pole may seem to turn the other way.
+                Err(_) if end - begin > SHORTEST => return self.halves([begin, middle, end]),
+                Err(reason) => return Err(reason),
+            };
+            for (values, (now, then)) in values.iter_mut().zip(near.iter().zip(before.iter())) {
+                // Differences keep the digits of large positions.
+                values[node] = now - then;
             }
         }
-        near = here;
-        let mut around = [near; 7];
-        for (offset, axes) in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]
-            .iter()
-            .zip(&mut around)
-        {
-            *axes = machine.follow(&piece.extended(time + offset * STEP), &near)?;
+        let mut found = Worst::NONE;
+        let mut attained = Worst::NONE;
+        let mut believed = true;
+        for (axis, limits) in self.axes.iter().enumerate() {
+            let mut series = through_nodes(&values[axis]);
+            let rests = last(&series);
+            believed &= falls(&series, RESOLVED);
+            let mut scale = 1.0;
+            for (order, limit) in bounds(limits).into_iter().enumerate() {
+                series = slope(&series);
+                scale /= half;
+                let rest = rests[order] * scale / limit;
+                let share = bound(&series, width) * scale / limit + rest;
+                believed &= rest <= BELIEVED;
+                if share > found.share {
+                    found = Worst { share, axis, order };
+                }
+                if share > FREE {
+                    let most = [-width, 0.0, width]
+                        .iter()
+                        .map(|at| value(&series, *at).abs())
+                        .fold(0.0, f64::max);
+                    let share = most * scale / limit;
+                    if share > attained.share {
+                        attained = Worst { share, axis, order };
+                    }
+                }
+            }
         }
-        for (axis, limits) in axes.iter().enumerate() {
-            let sum = |weights: &[f64; 7]| {
-                // Differences from the middle keep the digits of large positions.
-                weights
-                    .iter()
-                    .zip(&around)
-                    .map(|(weight, at)| weight * (at[axis] - near[axis]))
-                    .sum::<f64>()
-            };
-            worst.raise(
-                axis,
-                limits,
-                [
-                    sum(&VELOCITY) / (VELOCITY_SCALE * STEP),
-                    sum(&ACCELERATION) / (ACCELERATION_SCALE * STEP.powi(2)),
-                    sum(&JERK) / (JERK_SCALE * STEP.powi(3)),
-                ],
-            );
+        let enough = FREE.max(attained.share.max(self.worst.share) * TIGHT);
+        if believed && attained.share > PLENTY {
+            found = attained;
+        } else if (!believed || found.share > enough) && end - begin > SHORTEST {
+            return self.halves([begin, middle, end]);
         }
-        part += 1.0;
+        if found.share > self.worst.share {
+            self.worst = found;
+        }
+        self.near = near;
+        Ok(())
     }
-    Ok((worst, stride))
 }

@@ -4,10 +4,10 @@
 //! kinematics at the poses and at way-points between them, then every axis for itself. Where the
 //! tool goes between is nobody's concern. Not here: tool motion.
 
-use crate::axis_limits::Stretch;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
 use crate::lay::scaled;
+use crate::relax::{AIM, Stretch};
 use crate::steps::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{AxesPiece, Axis, AxisVector, CubicInTime, Serves, cubic_at};
@@ -20,6 +20,31 @@ pub(crate) struct JointBlock {
     pub(crate) start: AxisVector,
     pub(crate) end: AxisVector,
     pub(crate) duration: f64,
+}
+
+impl JointBlock {
+    /// The least duration within the limits of all axes, and the limit that asks for it.
+    pub(crate) fn least_duration(&self, axes: &[Axis], chain: &FilterChain) -> (f64, Worst) {
+        let [long, short] = *chain.time_constants() else {
+            return (0.0, Worst::NONE);
+        };
+        let mut least = (0.0, Worst::NONE);
+        for (axis, limits) in axes.iter().enumerate() {
+            let span = (self.end[axis] - self.start[axis]).abs();
+            let limits = &limits.limits;
+            for (duration, order) in [
+                (span / (AIM * limits.velocity()), 0),
+                (span / (AIM * limits.acceleration() * long), 1),
+                (span / (AIM * limits.jerk() * long * short), 2),
+            ] {
+                if duration > least.0 {
+                    let share = 1.0;
+                    least = (duration, Worst { share, axis, order });
+                }
+            }
+        }
+        least
+    }
 }
 
 /// Straight moves of all axes between two rests.
@@ -89,7 +114,7 @@ impl JointStretch<'_> {
 }
 
 impl Stretch for JointStretch<'_> {
-    fn steps(&mut self) -> Vec<Steps> {
+    fn steps(&mut self, _changed: &[bool]) -> Vec<Steps> {
         let mut start = 0.0;
         self.blocks
             .iter()
@@ -127,7 +152,7 @@ impl Stretch for JointStretch<'_> {
                 );
             }
         }
-        worst.share /= crate::axis_limits::AIM;
+        worst.share /= AIM;
         Ok(worst)
     }
 

@@ -33,6 +33,17 @@ pub(crate) fn knots(steps: &[Steps], chain: &FilterChain) -> Vec<f64> {
     knots
 }
 
+/// The same within a stretch of time, and its ends.
+pub(crate) fn knots_within(
+    steps: &[Steps],
+    chain: &FilterChain,
+    [begin, end]: [f64; 2],
+) -> Vec<f64> {
+    let mut knots = knots(steps, chain);
+    knots.retain(|knot| (begin - SAME_KNOT..=end + SAME_KNOT).contains(knot));
+    knots
+}
+
 /// Blocks under way in every interval between knots: first and last.
 pub(crate) fn intervals<'a>(
     steps: &'a [Steps],

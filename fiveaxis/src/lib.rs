@@ -6,7 +6,6 @@
 //! crate knows machines by their inverse kinematics only, and no program.
 
 mod accumulate;
-mod axis_limits;
 mod block;
 mod corner;
 mod error;
@@ -14,11 +13,16 @@ mod follow;
 mod joint;
 mod lay;
 mod planner;
+mod relax;
 mod resolve;
 mod sampler;
+mod screen;
+mod series;
 mod settings;
 mod steps;
 mod timing;
+mod tool;
+mod way;
 
 pub use block::PoseBlock;
 pub use corner::PoseCorner;

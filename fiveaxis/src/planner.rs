@@ -2,18 +2,16 @@
 //!
 //! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
 
-use crate::axis_limits::{AIM, Stretch, least_duration, relax};
-use crate::block::{PoseBlock, shares};
-use crate::corner::PoseCorner;
+use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
-use crate::follow::{Worst, worst};
+use crate::follow::Worst;
 use crate::joint::{JointBlock, JointStretch};
 use crate::lay::{intervals, knots, piece, rest};
+use crate::relax::{Stretch, relax};
 use crate::settings::{PoseMethod, PoseSettings};
-use crate::steps::Steps;
-use crate::timing::{corners, time};
+use crate::tool::ToolStretch;
+use crate::way::Way;
 use std::collections::VecDeque;
-use toolglide_fir::FilterChain;
 use toolglide_kinematics::{
     AxesPiece, Axis, AxisVector, MachineKinematics, PoseFeed, PoseLeg, PosePath, PosePiece,
     ToolPose,
@@ -22,13 +20,6 @@ use toolglide_kinematics::{
 /// Most legs of a stretch: a longer one is planned in parts that rest in between, so that memory is
 /// bounded. A rest every four thousand moves costs less than a ten-thousandth of the time.
 const MOST_LEGS: usize = 4096;
-
-/// Factors by which a corner is taken more gently at once.
-const LEAST_EASING: f64 = 1.08;
-const MOST_EASING: f64 = 2.0;
-
-/// A corner taken more gently than this is a stop.
-const LEAST_SCALE: f64 = 0.05;
 
 /// Slower than this factor is worth a word.
 const NOTABLE: f64 = 1.001;
@@ -166,29 +157,21 @@ impl<'m> PosePlanner<'m> {
     }
 
     fn plan_tool(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
-        let mut stretch = ToolStretch {
-            machine: self.machine,
-            axes: &self.axes,
-            settings: &self.settings,
-            blocks: Vec::with_capacity(legs.len()),
-            corners: Vec::new(),
-            scales: Vec::new(),
-            ways: Vec::new(),
-        };
+        let mut blocks = Vec::with_capacity(legs.len());
+        let mut ways = Vec::with_capacity(legs.len());
         let mut asked = Vec::with_capacity(legs.len());
         let mut met: Vec<Option<Worst>> = Vec::with_capacity(legs.len());
+        let chain = self.settings.chain();
         for (number, leg) in legs {
             let Some(mut block) = PoseBlock::of(leg, *number, self.settings.turn_rate()) else {
                 continue;
             };
             asked.push(block.duration);
-            let way = self.way(&block)?;
-            if let Some(last) = way.last() {
-                self.at = *last;
-            }
+            let way = Way::along(&block, self.machine, &self.at)?;
+            self.at = *way.last();
             let mut limit = None;
             if self.settings.keeps_axis_limits() {
-                let (least, by) = least_duration(&way, &self.axes, self.settings.chain());
+                let (least, by) = way.least_duration(&self.axes, chain);
                 if least > block.duration {
                     block.duration = least;
                     limit = Some(by);
@@ -198,27 +181,22 @@ impl<'m> PosePlanner<'m> {
             if !(block.duration > 0.0 && block.duration.is_finite()) {
                 return Err(FiveAxisError::NoRate { index: *number });
             }
-            stretch.blocks.push(block);
-            stretch.ways.push(way);
+            blocks.push(block);
+            ways.push(way);
         }
-        let Some(last) = stretch.blocks.last() else {
+        let Some(last) = blocks.last() else {
             return Ok(());
         };
-        self.pose =
-            ToolPose::new(last.end, last.turn.end()).map_err(|reason| FiveAxisError::Path {
-                index: last.leg,
-                reason,
-            })?;
+        self.pose = last.pose(1.0)?;
         if let PoseMethod::JointSpace { way_points } = self.settings.method() {
-            return self.plan_joints(&stretch.blocks, &stretch.ways, way_points);
+            return self.plan_joints(&blocks, &ways, way_points);
         }
-        stretch.corners = corners(&stretch.blocks);
-        stretch.scales = vec![1.0; stretch.corners.len()];
-        let chain = self.settings.chain();
+        let count = blocks.len();
+        let mut stretch = ToolStretch::new(self.machine, &self.axes, &self.settings, blocks, ways)?;
         let steps = if self.settings.keeps_axis_limits() {
             relax(&mut stretch, chain, &self.axes, &mut met)?
         } else {
-            stretch.steps()
+            stretch.steps(&vec![true; count])
         };
         let knots = knots(&steps, chain);
         for (interval, range) in intervals(&steps, &knots, chain) {
@@ -236,70 +214,29 @@ impl<'m> PosePlanner<'m> {
         Ok(())
     }
 
-    /// Axis positions at equal shares of a block, ends included.
-    fn way(&self, block: &PoseBlock) -> Result<Vec<AxisVector>, FiveAxisError> {
-        let shares = shares(block.length, block.turn.angle());
-        let span = block.end - block.start;
-        let mut way = vec![self.at];
-        let mut near = self.at;
-        let mut step = 0.0;
-        while step <= shares {
-            let share = step / shares;
-            let pose = ToolPose::new(block.start + span * share, block.turn.at(share)).map_err(
-                |reason| FiveAxisError::Path {
-                    index: block.leg,
-                    reason,
-                },
-            )?;
-            near = self
-                .machine
-                .follow(&pose, &near)
-                .map_err(|reason| FiveAxisError::Machine {
-                    index: block.leg,
-                    reason,
-                })?;
-            if step == 0.0 {
-                way[0] = near;
-            } else {
-                way.push(near);
-            }
-            step += 1.0;
-        }
-        Ok(way)
-    }
-
     /// Every axis for itself between the poses of the blocks, and `way_points` between them.
     fn plan_joints(
         &mut self,
         blocks: &[PoseBlock],
-        ways: &[Vec<AxisVector>],
+        ways: &[Way],
         way_points: u32,
     ) -> Result<(), FiveAxisError> {
         let parts = f64::from(way_points) + 1.0;
         let mut joints = Vec::new();
         for (block, way) in blocks.iter().zip(ways) {
-            let (Some(first), Some(last)) = (way.first(), way.last()) else {
-                continue;
-            };
-            let span = block.end - block.start;
-            let mut start = *first;
+            let mut start = *way.first();
             let mut part = 1.0;
             while part <= parts {
                 let share = part / parts;
                 let end = if part < parts {
-                    let pose = ToolPose::new(block.start + span * share, block.turn.at(share))
-                        .map_err(|reason| FiveAxisError::Path {
-                            index: block.leg,
-                            reason,
-                        })?;
                     self.machine
-                        .follow(&pose, &start)
+                        .follow(&block.pose(share)?, &start)
                         .map_err(|reason| FiveAxisError::Machine {
                             index: block.leg,
                             reason,
                         })?
                 } else {
-                    *last
+                    *way.last()
                 };
                 joints.push(JointBlock {
                     leg: block.leg,
@@ -322,22 +259,22 @@ impl<'m> PosePlanner<'m> {
             let PosePath::Axes { start, end } = &leg.path else {
                 continue;
             };
-            let way = [*start, *end];
-            let (least, _) = least_duration(&way, &self.axes, self.settings.chain());
+            let mut block = JointBlock {
+                leg: *number,
+                line: leg.line,
+                start: *start,
+                end: *end,
+                duration: 0.0,
+            };
+            let (least, _) = block.least_duration(&self.axes, self.settings.chain());
             let asked = match leg.feed {
                 PoseFeed::Rapid => 0.0,
                 PoseFeed::Duration(duration) => duration,
                 PoseFeed::Speed(feedrate) => way_length(&self.axes, start, end) / feedrate.speed(),
             };
-            let duration = asked.max(least);
-            if duration > 0.0 {
-                joints.push(JointBlock {
-                    leg: *number,
-                    line: leg.line,
-                    start: *start,
-                    end: *end,
-                    duration,
-                });
+            block.duration = asked.max(least);
+            if block.duration > 0.0 {
+                joints.push(block);
             }
         }
         if let Some(last) = joints.last() {
@@ -366,7 +303,7 @@ impl<'m> PosePlanner<'m> {
         let steps = if self.settings.keeps_axis_limits() {
             relax(&mut stretch, chain, &self.axes, &mut met)?
         } else {
-            stretch.steps()
+            stretch.steps(&[])
         };
         let knots = knots(&steps, chain);
         for (interval, range) in intervals(&steps, &knots, chain) {
@@ -429,124 +366,4 @@ fn way_length(axes: &[Axis], start: &AxisVector, end: &AxisVector) -> f64 {
     } else {
         of(AxisKind::Rotary).to_degrees()
     }
-}
-
-/// Blocks of tool motion between two rests, and the way of the axes along each.
-struct ToolStretch<'a> {
-    machine: &'a dyn MachineKinematics,
-    axes: &'a [Axis],
-    settings: &'a PoseSettings,
-    blocks: Vec<PoseBlock>,
-    corners: Vec<PoseCorner>,
-    /// How gently each corner is taken, as a share of what the tolerances allow.
-    scales: Vec<f64>,
-    ways: Vec<Vec<AxisVector>>,
-}
-
-impl ToolStretch<'_> {
-    fn chain(&self) -> &FilterChain {
-        self.settings.chain()
-    }
-
-    /// The scale of a corner after it was taken more gently.
-    fn eased(&self, scale: f64, worst: &Worst) -> f64 {
-        // As long as two blocks overlap at all, their jerks add up.
-        let adds_up = worst.order == 2 && self.settings.method() == PoseMethod::DwellControlled;
-        let eased = scale / worst.share.clamp(LEAST_EASING, MOST_EASING);
-        if adds_up || eased < LEAST_SCALE {
-            0.0
-        } else {
-            eased
-        }
-    }
-}
-
-impl Stretch for ToolStretch<'_> {
-    fn steps(&mut self) -> Vec<Steps> {
-        time(
-            &mut self.blocks,
-            &self.corners,
-            &self.scales,
-            self.settings.method(),
-            self.settings.chain(),
-        )
-    }
-
-    fn worst(
-        &self,
-        steps: &[Steps],
-        interval: [f64; 2],
-        range: [usize; 2],
-    ) -> Result<Worst, FiveAxisError> {
-        let chain = self.chain();
-        let piece = piece(&self.blocks, steps, chain, interval, range);
-        // The axes are near those of the path of the block that is half done.
-        let mut near = self.ways[range[0]][0];
-        let under_way = range[0]..=range[1];
-        for (steps, way) in steps[under_way.clone()].iter().zip(&self.ways[under_way]) {
-            let done = steps.cubic(chain, interval[0], interval[0])[0];
-            if done > 0.0 {
-                near = way[nearest(done, way.len())];
-            }
-        }
-        let mut found = worst(self.machine, self.axes, &piece, &near).map_err(|reason| {
-            FiveAxisError::Machine {
-                index: self.blocks[range[0]].leg,
-                reason,
-            }
-        })?;
-        found.share /= AIM;
-        Ok(found)
-    }
-
-    fn pace(&self, block: usize) -> f64 {
-        let block = &self.blocks[block];
-        // A turn of one radian counts as much as a way of a hundred millimetres.
-        block.feedrate().max(100.0 * block.turn_rate())
-    }
-
-    fn duration(&mut self, block: usize) -> &mut f64 {
-        &mut self.blocks[block].duration
-    }
-
-    fn cost_of_easing(&self, block: usize, worst: &Worst) -> f64 {
-        let Some(&scale) = self.scales.get(block) else {
-            return f64::INFINITY;
-        };
-        if scale <= 0.0 {
-            return f64::INFINITY;
-        }
-        let pair = [&self.blocks[block], &self.blocks[block + 1]];
-        let corner = &self.corners[block];
-        let lost = scale - self.eased(scale, worst);
-        match self.settings.method() {
-            PoseMethod::DwellControlled => lost * corner.overlap(pair[0], pair[1], self.chain()),
-            PoseMethod::VelocityControlled => {
-                let shares = pair.map(|block| corner.slow_share(block, self.chain()));
-                0.5 * self.chain().total_delay() * lost * (shares[0] + shares[1])
-            }
-            _ => f64::INFINITY,
-        }
-    }
-
-    fn ease(&mut self, block: usize, worst: &Worst) {
-        if let Some(&scale) = self.scales.get(block) {
-            self.scales[block] = self.eased(scale, worst);
-        }
-    }
-
-    fn leg(&self, block: usize) -> u32 {
-        self.blocks[block].leg
-    }
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "a share from 0 to 1 of a count below a hundred"
-)]
-fn nearest(share: f64, count: usize) -> usize {
-    let last = count.saturating_sub(1);
-    ((share.clamp(0.0, 1.0) * last as f64).round() as usize).min(last)
 }

@@ -34,25 +34,24 @@ pub(crate) fn corners(blocks: &[PoseBlock]) -> Vec<PoseCorner> {
 }
 
 /// Steps of all blocks, from time 0 on. Every corner is taken as gently as its scale says, from 1 down
-/// to 0; blocks may be slowed down where many corners are close.
+/// to 0; blocks may be slowed down where many corners are close. Overlaps stay as they were where no
+/// block and no corner has changed.
 pub(crate) fn time(
     blocks: &mut [PoseBlock],
     corners: &[PoseCorner],
     scales: &[f64],
     method: PoseMethod,
     chain: &FilterChain,
+    changed: &[bool],
+    overlaps: &mut [f64],
 ) -> Vec<Steps> {
     match method {
-        PoseMethod::PointToPoint => schedule(blocks, &vec![0.0; corners.len()], chain),
-        PoseMethod::DwellControlled => {
-            let overlaps = settle(blocks, corners, scales, chain);
-            schedule(blocks, &overlaps, chain)
-        }
-        PoseMethod::VelocityControlled => slow(blocks, corners, scales, chain),
-        PoseMethod::JointSpace { .. } => {
-            schedule(blocks, &vec![chain.total_delay(); corners.len()], chain)
-        }
+        PoseMethod::PointToPoint => overlaps.fill(0.0),
+        PoseMethod::DwellControlled => settle(blocks, corners, scales, chain, changed, overlaps),
+        PoseMethod::VelocityControlled => return slow(blocks, corners, scales, chain),
+        PoseMethod::JointSpace { .. } => overlaps.fill(chain.total_delay()),
     }
+    schedule(blocks, overlaps, chain)
 }
 
 /// One pulse a block, with the dwells that the overlaps leave between them.

@@ -120,3 +120,21 @@ fn a_feedrate_below_that_of_the_motion_is_exceeded() {
     let report = judge(machine.as_ref(), &axes, &slower, &planned);
     assert!(!report.passes(), "a tip faster than its feedrate passes");
 }
+
+#[test]
+fn a_motion_many_turns_away_is_judged_as_at_home() {
+    let (machine, axes, legs, planned) = right();
+    let home = judge(machine.as_ref(), &axes, &legs, &planned);
+    let mut away = planned;
+    away.start[4] += 20.0 * std::f64::consts::TAU;
+    let away = judge(machine.as_ref(), &axes, &legs, &away);
+    for (home, away) in home.axes.iter().zip(&away.axes) {
+        let miss = (home.jerk.value - away.jerk.value).abs();
+        assert!(
+            miss < 1e-3 * home.jerk.value,
+            "{}: {miss} of jerk",
+            home.name
+        );
+    }
+    assert!(away.passes(), "{:#?}", away.examples);
+}

@@ -26,6 +26,13 @@ const TRUNCATION: f64 = 1e-5;
 /// What the last coefficients may add to a position, mm and rad: far below what may jump.
 const TRUNCATION_LENGTH: f64 = 1e-10;
 
+/// Below this, mm and rad, coefficients that do not fall any more are the rounding of positions, which
+/// shorter stretches would only enlarge.
+const ROUNDING: f64 = 1e-11;
+
+/// Coefficients fall when the last two are less than this share of the two before them.
+const FALLING: f64 = 0.2;
+
 /// Derivatives of the position of one axis at one instant, the position first.
 pub(super) type Derivatives = [f64; 4];
 
@@ -98,7 +105,9 @@ impl<'m> Follower<'m> {
         let scale = TRUNCATION * half.powi(3) / last_jerk();
         let resolved = series.iter().zip(&self.axes).all(|(series, axis)| {
             let last = series[NODES - 1].abs().max(series[NODES - 2].abs());
+            let before = series[NODES - 3].abs().max(series[NODES - 4].abs());
             last < (scale * axis.limits.jerk()).min(TRUNCATION_LENGTH)
+                || (last < ROUNDING && last > FALLING * before)
         });
         if !resolved && 0.5 * (end - begin) > SHORTEST_HALF {
             self.near = before;

@@ -1,0 +1,77 @@
+//! Motion past the pole of a machine, where a rotary axis turns half around at once.
+
+mod common;
+
+use common::{judge, legs, plan, settings, start_of, table_ac};
+use proptest::prelude::*;
+use toolglide_fiveaxis::PoseMethod;
+use toolglide_machines::find;
+
+/// A pose whose tool leans by so much along X and Y.
+fn leaning(tip: [f64; 3], lean: [f64; 2]) -> [f64; 6] {
+    let up = (1.0 - lean[0].powi(2) - lean[1].powi(2)).sqrt();
+    [tip[0], tip[1], tip[2], lean[0], lean[1], up]
+}
+
+#[test]
+fn moves_past_the_pole_at_any_distance_keep_every_limit() {
+    for name in ["table-ac", "table-bc", "head-bc"] {
+        let model = find(name).unwrap();
+        let machine = (model.build)(&(model.preset)()).unwrap();
+        let axes = machine.axes().to_vec();
+        for case in 0..150_u32 {
+            let distance = 1e-4 * 500.0_f64.powf(f64::from(case / 6) / 24.0);
+            let from = [0.05, 0.2, 0.4][case as usize % 3];
+            let length = if case % 2 == 0 { 20.0 } else { 1.0 };
+            let (sin, cos) = (0.7 + 1.3 * f64::from(case)).sin_cos();
+            let at = |along: f64| [along * cos - distance * sin, along * sin + distance * cos];
+            let rows = [
+                leaning([0.0, 0.0, 0.0], at(-from)),
+                leaning([length, 0.3 * length, 0.0], at(0.6 * from)),
+            ];
+            let start = start_of(machine.as_ref(), &rows[0]);
+            let legs = legs(&rows, 100.0, 0.05, 0.002);
+            let settings = settings([0.1, 0.05], PoseMethod::PointToPoint);
+            let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
+            let report = judge(machine.as_ref(), &axes, &legs, &planned);
+            assert!(
+                report.passes(),
+                "{name} from {from} past the pole at {distance:.1e}: {:#?}",
+                report.examples
+            );
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn chains_around_the_pole_keep_everything(
+        steps in prop::collection::vec(
+            (-0.15..0.15_f64, -0.15..0.15_f64, -10.0..10.0_f64, -10.0..10.0_f64),
+            2..8,
+        ),
+        speed in 5.0..200.0_f64,
+        tip in 0.005..0.2_f64,
+        orientation in 0.0005..0.02_f64,
+    ) {
+        let rows: Vec<[f64; 6]> = steps
+            .iter()
+            .map(|&(i, j, x, y)| leaning([x, y, 0.1 * x], [i, j]))
+            .collect();
+        let (machine, axes) = table_ac();
+        let start = start_of(machine.as_ref(), &rows[0]);
+        let legs = legs(&rows, speed, tip, orientation);
+        for method in [
+            PoseMethod::DwellControlled,
+            PoseMethod::VelocityControlled,
+            PoseMethod::PointToPoint,
+        ] {
+            let settings = settings([0.05, 0.025], method);
+            let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
+            let report = judge(machine.as_ref(), &axes, &legs, &planned);
+            prop_assert!(report.passes(), "{method:?}: {:#?}", report.examples);
+        }
+    }
+}
