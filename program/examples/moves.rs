@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut out = BufWriter::new(std::io::stdout().lock());
     let mut at = Vector::<3>::zeros();
     for step in program {
-        let step = step?;
+        // As people read it, not as programs print it.
+        let step = step.map_err(|refused| refused.to_string())?;
         let end = step.end(at);
         let kind = match step.path() {
             Path::Arc(_) => "arc",

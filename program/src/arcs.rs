@@ -80,10 +80,7 @@ pub(crate) fn arc(
     for axis in axes {
         if !state.settings.axes[axis] {
             let letter = char::from(AXES[axis]);
-            return Err(Fault::new(
-                motion_span(block),
-                Reason::NoSuchAxis { letter },
-            ));
+            return Err(Fault::new(motion_span(block), block.no_axis(letter)));
         }
     }
     let counter_clockwise = motion == Motion::CounterClockwise;

@@ -5,16 +5,16 @@
 //! program asks for, see `splines`.
 
 use crate::lower::MOST_MOVES;
+use toolglide_kinematics::Vector;
 
 /// A point times its weight, and the weight.
-pub(crate) type Weighted = [f64; 3];
+pub(crate) type Weighted = [f64; 4];
 
 /// How often one curve is halved at most: beyond a million chords there is no curve left.
 pub(crate) const MOST_HALVINGS: u32 = 20;
 
 /// Appends points to which chords lead from the start of a curve, within `error` of it.
-pub(crate) fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut Vec<[f64; 2]>) {
-    let place = |point: &Weighted| [point[0] / point[2], point[1] / point[2]];
+pub(crate) fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut Vec<[f64; 3]>) {
     let (Some(first), Some(last)) = (curve.first(), curve.last()) else {
         return;
     };
@@ -23,7 +23,7 @@ pub(crate) fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut 
         .iter()
         .all(|point| off_chord(place(point), start, end) <= error);
     if flat || halvings == 0 || into.len() > MOST_MOVES as usize {
-        into.push(end);
+        into.push(end.into());
         return;
     }
     let (before, after) = halved(curve);
@@ -31,17 +31,21 @@ pub(crate) fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut 
     flatten(&after, error, halvings - 1, into);
 }
 
+fn place(point: &Weighted) -> Vector<3> {
+    Vector::from_fn(|axis, _| point[axis] / point[3])
+}
+
 /// Distance of a point from a chord.
-fn off_chord(point: [f64; 2], start: [f64; 2], end: [f64; 2]) -> f64 {
-    let along = [end[0] - start[0], end[1] - start[1]];
-    let from = [point[0] - start[0], point[1] - start[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
+fn off_chord(point: Vector<3>, start: Vector<3>, end: Vector<3>) -> f64 {
+    let along = end - start;
+    let from = point - start;
+    let square = along.norm_squared();
     let share = if square > 0.0 {
-        ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0)
+        (from.dot(&along) / square).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    (from[0] - share * along[0]).hypot(from[1] - share * along[1])
+    (from - share * along).norm()
 }
 
 /// De Casteljau's two halves of a Bezier curve.
@@ -60,32 +64,43 @@ fn halved(curve: &[Weighted]) -> (Vec<Weighted>, Vec<Weighted>) {
     (before, after)
 }
 
-/// The Bezier curves of a clamped spline with equal steps between its inner knots, by inserting each
-/// inner knot until the curves part there (Boehm).
-pub(crate) fn beziers(points: &[Weighted], order: usize) -> Vec<Vec<Weighted>> {
-    let spans = points.len() + 1 - order;
-    let mut knots: Vec<f64> = Vec::new();
-    knots.extend(std::iter::repeat_n(0.0, order));
+/// Knots of a clamped spline with equal steps between its inner ones.
+pub(crate) fn even_knots(points: usize, order: usize) -> Vec<f64> {
+    let mut knots = vec![0.0; order];
     let mut inner = 0.0;
-    for _ in 1..spans {
+    for _ in order..points {
         inner += 1.0;
         knots.push(inner);
     }
     knots.extend(std::iter::repeat_n(inner + 1.0, order));
-    let mut points = points.to_vec();
+    knots
+}
+
+/// The Bezier curves of a clamped spline, by inserting each of its inner knots until the curves part
+/// there (Boehm).
+pub(crate) fn beziers(points: &[Weighted], order: usize, knots: &[f64]) -> Vec<Vec<Weighted>> {
     let degree = order - 1;
-    let mut knot = 0.0;
-    for _ in 1..spans {
-        knot += 1.0;
-        for _ in 1..degree {
+    if degree == 0 || points.len() < order || knots.len() != points.len() + order {
+        return Vec::new();
+    }
+    // Inner knots, and how often each stands there.
+    let mut inner: Vec<(f64, usize)> = Vec::new();
+    for &knot in &knots[order..points.len()] {
+        match inner.last_mut() {
+            Some((last, times)) if knot <= *last => *times += 1,
+            _ => inner.push((knot, 1)),
+        }
+    }
+    let mut points = points.to_vec();
+    let mut knots = knots.to_vec();
+    for &(knot, times) in &inner {
+        for _ in times..degree {
             insert(&mut points, &mut knots, degree, knot);
         }
     }
-    if degree == 0 {
-        return Vec::new();
-    }
-    (0..spans)
-        .map(|span| points[span * degree..=span * degree + degree].to_vec())
+    (0..=inner.len())
+        .filter_map(|span| points.get(span * degree..=span * degree + degree))
+        .map(<[Weighted]>::to_vec)
         .collect()
 }
 
@@ -110,7 +125,7 @@ fn insert(points: &mut Vec<Weighted>, knots: &mut Vec<f64>, degree: usize, knot:
                 std::array::from_fn(|axis| share * here[axis] + (1.0 - share) * before[axis])
             }
             (Some(point), None) | (None, Some(point)) => point,
-            (None, None) => [0.0, 0.0, 1.0],
+            (None, None) => [0.0, 0.0, 0.0, 1.0],
         });
     }
     *points = next;
@@ -124,47 +139,64 @@ mod tests {
     #[test]
     fn a_quarter_circle_of_three_weights_stays_on_its_circle() {
         let weight = 0.5_f64.sqrt();
-        let curve = [[1.0, 0.0, 1.0], [weight, weight, weight], [0.0, 1.0, 1.0]];
+        let curve = [
+            [1.0, 0.0, 2.0, 1.0],
+            [weight, weight, 2.0 * weight, weight],
+            [0.0, 1.0, 2.0, 1.0],
+        ];
         let mut chords = Vec::new();
         flatten(&curve, 1e-4, MOST_HALVINGS, &mut chords);
         assert!(chords.len() > 8, "{} chords", chords.len());
         for point in &chords {
             assert!((point[0].hypot(point[1]) - 1.0).abs() < 1e-12, "{point:?}");
+            assert!((point[2] - 2.0).abs() < 1e-12, "{point:?}");
         }
     }
 
     #[test]
     fn a_spline_in_pieces_is_the_spline_by_its_recursion() {
         let points: Vec<Weighted> = [
-            [0.0, 0.0, 1.0],
-            [1.0, 3.0, 1.0],
-            [3.0, 4.0, 1.0],
-            [5.0, -1.0, 1.0],
-            [7.0, 2.0, 1.0],
-            [8.0, 0.0, 1.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [1.0, 3.0, 1.0, 1.0],
+            [6.0, 8.0, 2.0, 2.0],
+            [5.0, -1.0, 1.0, 1.0],
+            [3.5, 1.0, 0.0, 0.5],
+            [8.0, 0.0, -1.0, 1.0],
         ]
         .to_vec();
         for order in 2..=5 {
-            let curves = beziers(&points, order);
-            let spans = points.len() + 1 - order;
-            assert_eq!(curves.len(), spans, "spans of order {order}");
-            let clamp = |index: usize| index.saturating_sub(order - 1).min(spans);
-            let knots: Vec<f64> = (0..points.len() + order)
-                .map(|index| f64::from(u32::try_from(clamp(index)).unwrap()))
-                .collect();
-            for (span, curve) in curves.iter().enumerate() {
-                let (before, _) = halved(curve);
-                let middle = before[order - 1];
-                let at = f64::from(u32::try_from(span).unwrap()) + 0.5;
-                let mut expected = [0.0; 2];
-                for (index, point) in points.iter().enumerate() {
-                    let share = basis(&knots, index, order, at);
-                    expected[0] += share * point[0];
-                    expected[1] += share * point[1];
-                }
-                let off = (middle[0] - expected[0]).hypot(middle[1] - expected[1]);
-                assert!(off < 1e-12, "order {order}, span {span}: off by {off}");
+            let even = even_knots(points.len(), order);
+            // Uneven steps, and two inner knots that coincide where the order allows it.
+            let uneven: Vec<f64> = even.iter().map(|knot| 0.3 * knot * knot + 1.0).collect();
+            let mut double = uneven.clone();
+            if order > 2 && order + 1 < points.len() {
+                double[order + 1] = double[order];
             }
+            for knots in [even, uneven, double] {
+                agree(&points, order, &knots);
+            }
+        }
+    }
+
+    /// Asserts that the middle of each piece is where the recursion has it.
+    fn agree(points: &[Weighted], order: usize, knots: &[f64]) {
+        let mut distinct = knots.to_vec();
+        distinct.dedup();
+        let curves = beziers(points, order, knots);
+        assert_eq!(curves.len(), distinct.len() - 1, "spans of {knots:?}");
+        for (ends, curve) in distinct.windows(2).zip(&curves) {
+            let (before, _) = halved(curve);
+            let middle = before[order - 1];
+            let at = 0.5 * (ends[0] + ends[1]);
+            let mut expected = [0.0; 4];
+            for (index, point) in points.iter().enumerate() {
+                let share = basis(knots, index, order, at);
+                for (sum, coordinate) in expected.iter_mut().zip(point) {
+                    *sum += share * coordinate;
+                }
+            }
+            let off = (place(&middle) - place(&expected)).norm();
+            assert!(off < 1e-12, "order {order} at {at}: off by {off}");
         }
     }
 

@@ -4,15 +4,17 @@
 
 use crate::codes::{
     Code, Distance, FeedMode, Group, Meaning, Motion, Once, PathControl, Plane, Saving, Side, Stop,
-    ToolLength, Unread, miscellaneous, of_rotary, preparatory, unread_letter,
+    Subprogram, ToolLength,
 };
 use crate::error::{Fault, Notice, Remark};
 use crate::lexer::{Assignment, Lexer, Word};
+use crate::meanings::{Unread, miscellaneous, of_rotary, preparatory};
 use crate::parameters::Values;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
 use crate::units::Units;
+use std::sync::Arc;
 
 /// Letters of the axes, in the order of coordinates.
 pub(crate) const AXES: [u8; 3] = *b"XYZ";
@@ -21,7 +23,7 @@ pub(crate) const AXES: [u8; 3] = *b"XYZ";
 pub(crate) const OFFSETS: [u8; 3] = *b"IJK";
 
 /// Letters that move something or name a point: those of the axes, and distance and angle.
-pub(crate) const POINT: [u8; 8] = *b"XYZ@^ABC";
+pub(crate) const POINT: [u8; 11] = *b"XYZ@^ABCUVW";
 
 /// Letters, `@`, `^` and `$`.
 const LETTERS: usize = 29;
@@ -40,13 +42,15 @@ pub(crate) const POLAR: u8 = 2;
 pub(crate) const ROTARY: u8 = 4;
 pub(crate) const EXTRUDER: u8 = 8;
 pub(crate) const O_WORDS: u8 = 16;
+pub(crate) const SECONDARY: u8 = 32;
 
 /// Names of these parts.
-pub(crate) const FEATURES: [(u8, &str); 5] = [
+pub(crate) const FEATURES: [(u8, &str); 6] = [
     (PARAMETERS, "parameters and expressions"),
     (O_WORDS, "O words"),
     (POLAR, "polar coordinates"),
     (ROTARY, "rotary axes"),
+    (SECONDARY, "secondary axes U V W"),
     (EXTRUDER, "extruder"),
 ];
 
@@ -67,6 +71,10 @@ pub(crate) struct Block {
     pub(crate) assignments: Vec<Assignment>,
     /// Whether the machine has rotary axes.
     pub(crate) rotary: bool,
+    /// Whether it has secondary axes U, V and W.
+    pub(crate) secondary: bool,
+    /// Its name; empty where nobody gave one.
+    pub(crate) machine: Arc<str>,
     /// What was met beside codes.
     pub(crate) features: u8,
     /// How often each code was met, for `G` and `M` by ten times its number, as far as one was met.
@@ -89,6 +97,7 @@ pub(crate) struct Block {
     pub(crate) feed_mode: Option<FeedMode>,
     pub(crate) path_control: Option<PathControl>,
     pub(crate) stop: Option<Stop>,
+    pub(crate) subprogram: Option<Subprogram>,
 }
 
 impl Block {
@@ -103,6 +112,8 @@ impl Block {
             words: 0,
             assignments: Vec::new(),
             rotary: false,
+            secondary: false,
+            machine: Arc::from(""),
             features: 0,
             counts: [Vec::new(), Vec::new()],
             motion: None,
@@ -123,6 +134,7 @@ impl Block {
             feed_mode: None,
             path_control: None,
             stop: None,
+            subprogram: None,
         }
     }
 
@@ -150,6 +162,7 @@ impl Block {
         self.feed_mode = None;
         self.path_control = None;
         self.stop = None;
+        self.subprogram = None;
     }
 
     /// Replaces the block by the words of `line`.
@@ -201,7 +214,7 @@ impl Block {
         match word.letter {
             b'G' => self.preparatory(word, settings, remarks),
             b'M' => self.miscellaneous(word, settings, remarks),
-            _ => self.value(word, settings, remarks),
+            _ => self.value(word, settings),
         }
     }
 
@@ -263,30 +276,30 @@ impl Block {
         (self.taken & 1 << group as u32 != 0).then(|| self.takers[group as usize])
     }
 
+    /// A refusal of an axis that the machine has not.
+    pub(crate) fn no_axis(&self, letter: char) -> Reason {
+        let machine = Arc::clone(&self.machine);
+        Reason::NoSuchAxis { letter, machine }
+    }
+
     /// A code skipped by lenient reading.
     pub(crate) fn foreign(&self) -> Option<Code> {
         self.foreign.as_ref().map(|(code, _)| *code)
     }
 
-    fn value(
-        &mut self,
-        word: Word,
-        settings: &Settings,
-        remarks: &mut Vec<Remark>,
-    ) -> Result<(), Fault> {
+    fn value(&mut self, word: Word, settings: &Settings) -> Result<(), Fault> {
         let letter = char::from(word.letter);
         if self.has(word.letter) {
             return Err(Fault::new(word.span, Reason::Repeated { letter }));
         }
-        let axis = AXES.iter().position(|&axis| axis == word.letter);
-        if axis.is_some_and(|axis| !settings.axes[axis]) {
-            return Err(Fault::new(word.span, Reason::NoSuchAxis { letter }));
-        }
-        if let Some(unread) = unread_letter(word.letter)
-            && !(self.rotary && matches!(word.letter, b'A'..=b'C'))
-        {
-            let fault = unread_fault(Code::letter(word.letter), word.span, unread);
-            return skip(fault, unread, settings, remarks);
+        let moves = match word.letter {
+            b'X'..=b'Z' => settings.axes[usize::from(word.letter - b'X')],
+            b'A'..=b'C' => self.rotary,
+            b'U'..=b'W' => self.secondary,
+            _ => true,
+        };
+        if !moves {
+            return Err(Fault::new(word.span, self.no_axis(letter)));
         }
         if word.letter == b'N' && word.value < 0.0 {
             let quantity = "line number";
@@ -297,6 +310,7 @@ impl Block {
         self.features |= match word.letter {
             b'@' | b'^' => POLAR,
             b'A'..=b'C' => ROTARY,
+            b'U'..=b'W' => SECONDARY,
             b'E' => EXTRUDER,
             _ => 0,
         };
@@ -428,6 +442,7 @@ impl Block {
             Meaning::FeedMode(mode) => self.feed_mode = Some(mode),
             Meaning::PathControl(control) => self.path_control = Some(control),
             Meaning::Stop(stop) => self.stop = Some(stop),
+            Meaning::Subprogram(which) => self.subprogram = Some(which),
             Meaning::Nothing => {}
         }
     }

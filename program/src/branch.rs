@@ -5,7 +5,7 @@
 
 use crate::control::{Control, Keyword, Label, control, o_word};
 use crate::error::Fault;
-use crate::flow::{Flow, Open};
+use crate::flow::{Call, Flow, Open};
 use crate::flow_error::FlowError;
 use crate::lower::Lowering;
 use crate::parameters::{DEEPEST_CALL, LOCAL_PARAMETERS};
@@ -62,7 +62,7 @@ impl<R: BufRead> Flow<R> {
     /// Loops of the file itself are remembered and run from memory.
     fn remember(&mut self, control: &Control, end: Keyword) -> Result<bool, Fault> {
         let recording = self.record(control, true, end)?;
-        self.run(recording, false);
+        self.run(recording, Call::None);
         Ok(true)
     }
 
@@ -94,7 +94,7 @@ impl<R: BufRead> Flow<R> {
             return Err(control.fault(FlowError::NoSubroutine { label }));
         };
         state.enter(&arguments);
-        self.run(recording, true);
+        self.run(recording, Call::Subroutine);
         Ok(())
     }
 

@@ -250,7 +250,7 @@ impl<R: BufRead> CutterLocations<R> {
         if self.warnings.len() < MOST_WARNINGS {
             let place = self.place(fault.span);
             let notice = Notice::Skipped(fault.reason);
-            self.warnings.push(Warning::new(place, notice));
+            self.warnings.push(Warning::new(place, notice, &self.text));
         } else {
             self.more_warnings += 1;
         }

@@ -1,16 +1,11 @@
-//! The codes of the language: what each one means and which exclude each other.
+//! Codes of the language, what they can mean, and which exclude each other.
 //!
-//! Source: the modal groups of RS274/NGC, and the codes of LinuxCNC for the names of what is
-//! refused. Not here: what a meaning does.
+//! Source: the modal groups of RS274/NGC. Not here: which code means what.
 
 use std::fmt;
 
 /// A number as near as this to a code is that code: the rounding of one multiplication by ten.
 const CODE_ROUNDING: f64 = 1e-9;
-
-/// First parameter of the point of `G28`, and of that of `G30`.
-const HOME: u16 = 5161;
-const SECOND_HOME: u16 = 5181;
 
 /// Largest number of a `G` or `M` code.
 const LARGEST_CODE: f64 = 999.0;
@@ -92,6 +87,8 @@ pub(crate) enum Motion {
     Quadratic,
     /// Control points of a rational spline.
     Nurbs,
+    /// Control points and knots of a rational spline.
+    Knots,
     /// Canned cycle, by the number of its code.
     Cycle(u8),
 }
@@ -107,6 +104,7 @@ impl Motion {
             Self::Cubic => Code::new(b'G', 50),
             Self::Quadratic => Code::new(b'G', 51),
             Self::Nurbs => Code::new(b'G', 52),
+            Self::Knots => Code::new(b'G', 62),
             Self::Cycle(number) => Code::new(b'G', 10 * number as u16),
         }
     }
@@ -182,6 +180,8 @@ pub(crate) enum Once {
     GoHome(u16),
     /// `G28.1` or `G30.1`.
     StoreHome(u16),
+    /// `G52`.
+    LocalShift,
     /// `G53`.
     MachineCoordinates,
     /// `G92`.
@@ -211,6 +211,15 @@ pub(crate) enum Stop {
     End,
 }
 
+/// Programs with a number within the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Subprogram {
+    /// `M98`.
+    Call,
+    /// `M99`.
+    Return,
+}
+
 /// What a code does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meaning {
@@ -238,6 +247,7 @@ pub(crate) enum Meaning {
     FeedMode(FeedMode),
     PathControl(PathControl),
     Stop(Stop),
+    Subprogram(Subprogram),
     /// Of no effect on the motion.
     Nothing,
 }
@@ -285,7 +295,7 @@ impl Group {
             Self::Coordinates => "coordinate system",
             Self::PathControl => "path control",
             Self::Return => "return of cycles",
-            Self::Stop => "stop",
+            Self::Stop => "stop and subprograms",
             Self::ToolChange => "tool change",
             Self::Spindle => "spindle",
             Self::SpindleMode => "spindle mode",
@@ -295,169 +305,6 @@ impl Group {
             Self::Outside => "input and output",
         }
     }
-}
-
-/// What is known of a code that is not read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Unread {
-    /// Known by name.
-    Known(&'static str),
-    /// Known by name, and certain not to move an axis or to change how later words do.
-    Harmless(&'static str),
-    /// Not known.
-    Unknown,
-    /// Not known, but of a kind that moves no axis.
-    UnknownHarmless,
-    /// Of another machine, and certain not to move an axis: skipped with a warning even by strict
-    /// reading.
-    Carried,
-}
-
-/// Meaning of a `G` code.
-pub(crate) fn preparatory(tenths: u16) -> Result<(Group, Meaning), Unread> {
-    let motion = |motion| (Group::Motion, Meaning::Motion(motion));
-    let once = |once| (Group::NonModal, Meaning::Once(once));
-    let side = |side| (Group::CutterCompensation, Meaning::Side(side));
-    let length = |length| (Group::ToolLength, Meaning::ToolLength(length));
-    let coordinates = |system| (Group::Coordinates, Meaning::Coordinates(system));
-    let control = |control| (Group::PathControl, Meaning::PathControl(control));
-    Ok(match tenths {
-        0 => motion(Motion::Rapid),
-        10 => motion(Motion::Line),
-        20 => motion(Motion::Clockwise),
-        30 => motion(Motion::CounterClockwise),
-        40 => once(Once::Dwell),
-        50 => motion(Motion::Cubic),
-        51 => motion(Motion::Quadratic),
-        52 => motion(Motion::Nurbs),
-        53 => (Group::Motion, Meaning::EndOfNurbs),
-        100 => once(Once::SetData),
-        170 => (Group::Plane, Meaning::Plane(Plane::Xy)),
-        180 => (Group::Plane, Meaning::Plane(Plane::Zx)),
-        190 => (Group::Plane, Meaning::Plane(Plane::Yz)),
-        200 => (Group::Units, Meaning::Inch),
-        210 => (Group::Units, Meaning::Millimeter),
-        280 => once(Once::GoHome(HOME)),
-        281 => once(Once::StoreHome(HOME)),
-        300 => once(Once::GoHome(SECOND_HOME)),
-        301 => once(Once::StoreHome(SECOND_HOME)),
-        400 => side(Side::Off),
-        410 => side(Side::Left),
-        411 => side(Side::LeftOf),
-        420 => side(Side::Right),
-        421 => side(Side::RightOf),
-        430 => length(ToolLength::Table),
-        431 => length(ToolLength::Given),
-        432 => length(ToolLength::Added),
-        490 => length(ToolLength::Off),
-        530 => once(Once::MachineCoordinates),
-        540 => coordinates(1),
-        550 => coordinates(2),
-        560 => coordinates(3),
-        570 => coordinates(4),
-        580 => coordinates(5),
-        590 => coordinates(6),
-        591 => coordinates(7),
-        592 => coordinates(8),
-        593 => coordinates(9),
-        610 | 611 => control(PathControl::ExactStop),
-        640 => control(PathControl::Blend),
-        730 => motion(Motion::Cycle(73)),
-        740 => motion(Motion::Cycle(74)),
-        800 => motion(Motion::Off),
-        810 => motion(Motion::Cycle(81)),
-        820 => motion(Motion::Cycle(82)),
-        830 => motion(Motion::Cycle(83)),
-        840 => motion(Motion::Cycle(84)),
-        850 => motion(Motion::Cycle(85)),
-        860 => motion(Motion::Cycle(86)),
-        870 => motion(Motion::Cycle(87)),
-        880 => motion(Motion::Cycle(88)),
-        890 => motion(Motion::Cycle(89)),
-        900 => (Group::Distance, Meaning::Distance(Distance::Absolute)),
-        901 => (Group::ArcDistance, Meaning::ArcDistance(Distance::Absolute)),
-        910 => (Group::Distance, Meaning::Distance(Distance::Incremental)),
-        911 => (
-            Group::ArcDistance,
-            Meaning::ArcDistance(Distance::Incremental),
-        ),
-        920 => once(Once::Shift),
-        921 => once(Once::ClearShift),
-        922 => once(Once::SuspendShift),
-        923 => once(Once::RestoreShift),
-        930 => (Group::FeedMode, Meaning::FeedMode(FeedMode::InverseTime)),
-        940 => (Group::FeedMode, Meaning::FeedMode(FeedMode::PerMinute)),
-        970 => (Group::SpindleMode, Meaning::Nothing),
-        980 => (Group::Return, Meaning::ReturnToStart(true)),
-        990 => (Group::Return, Meaning::ReturnToStart(false)),
-        _ => return Err(unread_preparatory(tenths)),
-    })
-}
-
-fn unread_preparatory(tenths: u16) -> Unread {
-    Unread::Known(match tenths {
-        60..=63 => "splines with knots of their own",
-        70 | 80 => "diameters on a lathe",
-        150 | 160 => "polar coordinates by G16; write @ and ^",
-        170..=199 => "planes of axes other than X, Y and Z",
-        330 | 331 => "motion tied to the spindle",
-        380..=389 => "probing: where it ends is not known before",
-        434 | 435 => "control of the tool tip, which needs a machine with rotary axes",
-        520 => "offsets of the coordinate system by G52; write G92",
-        700..=720 | 760 => "cycles of a lathe",
-        950 => "feed for each turn of the spindle",
-        960 => return Unread::Harmless("constant surface speed"),
-        _ => return Unread::Unknown,
-    })
-}
-
-/// Meaning of an `M` code.
-pub(crate) fn miscellaneous(tenths: u16) -> Result<(Group, Meaning), Unread> {
-    let saving = |saving| (Group::Saving, Meaning::Saving(saving));
-    Ok(match tenths / 10 {
-        0 | 1 | 60 => (Group::Stop, Meaning::Stop(Stop::Pause)),
-        2 | 30 => (Group::Stop, Meaning::Stop(Stop::End)),
-        3..=5 => (Group::Spindle, Meaning::Nothing),
-        6 => (Group::ToolChange, Meaning::ToolChange),
-        // Mist and flood may be turned on together, but neither of them beside off.
-        7 | 9 => (Group::Coolant, Meaning::Nothing),
-        8 => (Group::SecondCoolant, Meaning::Nothing),
-        48..=53 => (Group::Overrides, Meaning::Nothing),
-        62..=68 => (Group::Outside, Meaning::Outside),
-        70 => saving(Saving::Save),
-        71 => saving(Saving::Forget),
-        72 => saving(Saving::Restore),
-        73 => saving(Saving::SaveForCall),
-        47 | 97..=99 => return Err(Unread::Known("jumps and subroutines other than O words")),
-        128 | 129 | 428..=430 => return Err(Unread::Known("change of the kinematics")),
-        // Of these LinuxCNC runs a program of the user, and printers heat and blow.
-        82..=84 | 100..=199 => return Err(Unread::Carried),
-        _ => return Err(Unread::UnknownHarmless),
-    })
-}
-
-/// Meaning of the codes that only a machine with rotary axes has.
-pub(crate) fn of_rotary(letter: u8, tenths: u16) -> Option<(Group, Meaning)> {
-    let tip = match (letter, tenths) {
-        (b'G', 434 | 435) | (b'M', 1280 | 4280) => true,
-        (b'M', 1290 | 4290) => false,
-        _ => return None,
-    };
-    let group = if letter == b'G' {
-        Group::ToolLength
-    } else {
-        Group::Outside
-    };
-    Some((group, Meaning::ToolTip(tip)))
-}
-
-/// What a letter stands for that no block may use.
-pub(crate) fn unread_letter(letter: u8) -> Option<Unread> {
-    Some(match letter {
-        b'A' | b'B' | b'C' => Unread::Known("rotary axes"),
-        b'U' | b'V' | b'W' => Unread::Known("secondary linear axes"),
-        _ => return None,
-    })
 }
 
 #[cfg(test)]

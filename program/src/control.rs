@@ -228,6 +228,16 @@ impl Control {
     }
 }
 
+/// The number of a line that has an O word and nothing else: the beginning of a program.
+pub(crate) fn bare_number(line: &[u8]) -> Option<u32> {
+    let start = o_word(line)? + 1;
+    let end = skip(line, start, |byte| byte.is_ascii_digit());
+    let behind = skip(line, end, |byte| matches!(byte, b' ' | b'\t'));
+    let alone = matches!(line.get(behind), None | Some(b'(' | b';'));
+    let digits = std::str::from_utf8(&line[start..end]).ok()?;
+    digits.parse().ok().filter(|_| alone)
+}
+
 /// Only the label and the keyword of a line, for lines that are passed over.
 pub(crate) fn glance(line: &[u8], label: &Label) -> Option<Keyword> {
     let at = o_word(line)?;

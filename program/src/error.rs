@@ -12,11 +12,29 @@ use thiserror::Error;
 pub struct ProgramError {
     place: Place,
     reason: Reason,
+    consequence: bool,
 }
 
 impl ProgramError {
     pub(crate) fn new(place: Place, reason: Reason) -> Self {
-        Self { place, reason }
+        Self {
+            place,
+            reason,
+            consequence: false,
+        }
+    }
+
+    /// The same refusal, as a consequence of one before it.
+    pub(crate) fn following(mut self, consequence: bool) -> Self {
+        self.consequence = consequence;
+        self
+    }
+
+    /// Whether it may be a mere consequence of a refusal before it: the refused line would have set what
+    /// is missing here, or would have brought the tool to where this line begins.
+    #[must_use]
+    pub fn is_consequence(&self) -> bool {
+        self.consequence
     }
 
     /// Where it stands, with file, line, column and word.
@@ -91,11 +109,23 @@ pub enum Notice {
 pub struct Warning {
     place: Place,
     notice: Notice,
+    text: Box<str>,
 }
 
 impl Warning {
-    pub(crate) fn new(place: Place, notice: Notice) -> Self {
-        Self { place, notice }
+    pub(crate) fn new(place: Place, notice: Notice, line: &[u8]) -> Self {
+        let text = String::from_utf8_lossy(line).into();
+        Self {
+            place,
+            notice,
+            text,
+        }
+    }
+
+    /// The line that it speaks of.
+    #[must_use]
+    pub fn line_text(&self) -> &str {
+        &self.text
     }
 
     /// Where it stands.

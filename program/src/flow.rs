@@ -10,6 +10,7 @@ use crate::lines::Lines;
 use crate::place::{Place, Span};
 use crate::reason::Reason;
 use crate::recording::{LONGEST_RECORDING, Recording};
+use crate::subprograms::Rest;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::sync::Arc;
@@ -30,11 +31,26 @@ pub(crate) struct Open {
 #[derive(Debug)]
 pub(crate) struct Frame {
     pub(crate) recording: Arc<Recording>,
-    /// Index of the line that is next.
+    /// Index of the line that is next, and of the one behind the last.
     pub(crate) next: usize,
+    pub(crate) end: usize,
     pub(crate) open: Vec<Open>,
-    /// Whether it is a subroutine.
-    pub(crate) call: bool,
+    pub(crate) call: Call,
+}
+
+/// What called the lines that run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Call {
+    /// Nothing: a loop, or the program itself.
+    None,
+    /// An O word.
+    Subroutine,
+    /// `M98`: number, first line, and how often it still runs.
+    Subprogram {
+        number: u32,
+        start: usize,
+        left: u32,
+    },
 }
 
 /// Finds the text of a subroutine by its name.
@@ -50,6 +66,8 @@ pub(crate) struct Flow<R> {
     pub(crate) subroutines: BTreeMap<Label, Arc<Recording>>,
     pub(crate) find: Option<Find>,
     pub(crate) most_steps: u64,
+    /// The rest of the file, once a subprogram was called.
+    pub(crate) rest: Option<Rest>,
     /// The line being run, if it is not the one of the file.
     current: Option<(Arc<Recording>, usize)>,
     steps: u64,
@@ -75,6 +93,7 @@ impl<R: BufRead> Flow<R> {
             subroutines: BTreeMap::new(),
             find: None,
             most_steps,
+            rest: None,
             current: None,
             steps: 0,
         }
@@ -115,12 +134,20 @@ impl<R: BufRead> Flow<R> {
     /// Goes to the next line; false at the end of the program.
     pub(crate) fn advance(&mut self) -> Result<bool, Reason> {
         while let Some(frame) = self.frames.last_mut() {
-            if frame.next < frame.recording.len() {
+            if frame.next < frame.end {
                 self.current = Some((Arc::clone(&frame.recording), frame.next));
                 frame.next += 1;
                 return self.step().map(|()| true);
             }
+            let call = frame.call;
+            if self.frames.len() == 1 && self.rest.is_some() {
+                // The file goes on from memory, so this was its end; its last line stays in sight.
+                return Ok(false);
+            }
             self.frames.pop();
+            if let Call::Subprogram { number, .. } = call {
+                return Err(FlowError::NoReturn { number }.into());
+            }
         }
         self.current = None;
         self.lines.advance()
@@ -157,7 +184,7 @@ impl<R: BufRead> Flow<R> {
     }
 
     /// The line being run, to be shown when the end of its block is missing.
-    fn here(&self) -> (Arc<Recording>, usize) {
+    pub(crate) fn here(&self) -> (Arc<Recording>, usize) {
         self.current.clone().unwrap_or_else(|| {
             let mut line = Recording::new(&self.file, self.lines.count());
             line.push(self.lines.text());
@@ -176,7 +203,7 @@ impl<R: BufRead> Flow<R> {
         let opening = self.here();
         loop {
             let more = match self.frames.last_mut() {
-                Some(frame) if frame.next < frame.recording.len() => {
+                Some(frame) if frame.next < frame.end => {
                     self.current = Some((Arc::clone(&frame.recording), frame.next));
                     frame.next += 1;
                     self.step().map_err(|reason| control.because(reason))?;
@@ -222,7 +249,7 @@ impl<R: BufRead> Flow<R> {
         let mut fits = !with_first || recording.push(self.text());
         loop {
             let more = match self.frames.last_mut() {
-                Some(frame) if frame.next < frame.recording.len() => {
+                Some(frame) if frame.next < frame.end => {
                     self.current = Some((Arc::clone(&frame.recording), frame.next));
                     frame.next += 1;
                     true
@@ -249,27 +276,38 @@ impl<R: BufRead> Flow<R> {
     }
 
     /// Runs a recording from its first line.
-    pub(crate) fn run(&mut self, recording: Arc<Recording>, call: bool) {
+    pub(crate) fn run(&mut self, recording: Arc<Recording>, call: Call) {
         self.frames.push(Frame {
-            recording,
             next: 0,
+            end: recording.len(),
+            recording,
             open: Vec::new(),
             call,
         });
     }
 
-    /// Ends the innermost subroutine; false when none runs.
-    pub(crate) fn leave(&mut self) -> bool {
-        let Some(call) = self.frames.iter().rposition(|frame| frame.call) else {
-            return false;
-        };
-        self.frames.truncate(call);
-        true
+    /// Shows a line as the one being run.
+    pub(crate) fn stay(&mut self, line: (Arc<Recording>, usize)) {
+        self.current = Some(line);
     }
 
-    /// Subroutines that are running.
+    /// Ends the innermost subroutine; false when none runs, or a subprogram within it.
+    pub(crate) fn leave(&mut self) -> bool {
+        let calls = |frame: &Frame| !matches!(frame.call, Call::None);
+        let Some(call) = self.frames.iter().rposition(calls) else {
+            return false;
+        };
+        let subroutine = matches!(self.frames[call].call, Call::Subroutine);
+        if subroutine {
+            self.frames.truncate(call);
+        }
+        subroutine
+    }
+
+    /// Subroutines and subprograms that are running.
     pub(crate) fn depth(&self) -> usize {
-        self.frames.iter().filter(|frame| frame.call).count()
+        let calls = |frame: &&Frame| !matches!(frame.call, Call::None);
+        self.frames.iter().filter(calls).count()
     }
 }
 

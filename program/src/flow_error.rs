@@ -51,6 +51,24 @@ pub enum FlowError {
         /// The label.
         label: Box<str>,
     },
+    /// A call of a subprogram that does not stand below.
+    #[error("there is no subprogram O{number} below this line")]
+    NoSubprogram {
+        /// Its number.
+        number: u32,
+    },
+    /// A subprogram without its end.
+    #[error("subprogram O{number} ends without M99")]
+    NoReturn {
+        /// Its number.
+        number: u32,
+    },
+    /// `M99` where no subprogram runs.
+    #[error("M99 outside a subprogram would begin the program again, without end")]
+    EndlessProgram,
+    /// `M99` in a subroutine by O words.
+    #[error("M99 does not end a subroutine; write ENDSUB or RETURN")]
+    MixedReturn,
     /// A file that should hold a subroutine, but does not.
     #[error("the file of subroutine {label} {message}")]
     BadFile {

@@ -35,7 +35,7 @@
 //! # Refused
 //!
 //! What cannot be planned as motion is refused with its name: probing, threads, feed for each turn,
-//! splines with knots of their own, axes that the machine has not. With [`Settings::lenient`], words
+//! axes that the machine has not. With [`Settings::lenient`], words
 //! that certainly do not move an axis (most unknown `M` codes, `G96`, `D`, `H`, `L`) become
 //! [`Warning`]s instead. Loops and subroutines have a bound on their depth and on the lines they run
 //! ([`Settings::steps`]), and a block has one on its moves, so that reading ends.
@@ -53,6 +53,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod aftermath;
 mod arcs;
 mod arithmetic_error;
 mod axis_words;
@@ -70,11 +71,13 @@ mod expression;
 mod flow;
 mod flow_error;
 mod frame;
+mod knot_spline;
 mod language;
 mod lexer;
 mod lines;
 mod lower;
 mod machining_error;
+mod meanings;
 mod modal;
 mod number;
 mod offset_curve;
@@ -94,6 +97,7 @@ mod splines;
 mod state;
 mod statement;
 mod statement_error;
+mod subprograms;
 mod tool_codes;
 mod tools;
 mod units;

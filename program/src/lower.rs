@@ -10,6 +10,7 @@ use crate::codes::{FeedMode, Group, Motion, Once, PathControl, Saving, Stop};
 use crate::compensation::Compensation;
 use crate::cycles::CycleState;
 use crate::error::{Fault, Remark};
+use crate::knot_spline::KnotSpline;
 use crate::lexer::Assignment;
 use crate::machining_error::MachiningError;
 use crate::modal::{Modal, not_negative};
@@ -55,6 +56,7 @@ pub(crate) struct Lowering {
     pub(crate) tip: bool,
     pub(crate) compensation: Option<Compensation>,
     pub(crate) nurbs: Option<Nurbs>,
+    pub(crate) knot_spline: Option<KnotSpline>,
     /// What the next spline of two offsets continues, if it does.
     pub(crate) spline_end: Option<[f64; 2]>,
     pub(crate) cycle: Option<CycleState>,
@@ -62,6 +64,8 @@ pub(crate) struct Lowering {
     /// come back when it ends.
     pub(crate) saved: Vec<Option<(Modal, bool)>>,
     pub(crate) line: u32,
+    /// Whether this block named its end so that it does not matter where the tool was.
+    pub(crate) arrived: bool,
     pub(crate) tools_used: BTreeSet<u32>,
     /// Whether it was said that words of an extruder are skipped.
     extruder_noted: bool,
@@ -82,10 +86,12 @@ impl Lowering {
             tip: false,
             compensation: None,
             nurbs: None,
+            knot_spline: None,
             spline_end: None,
             cycle: None,
             saved: vec![None],
             line: 0,
+            arrived: false,
             tools_used: BTreeSet::new(),
             extruder_noted: false,
         }
@@ -105,10 +111,20 @@ impl Lowering {
         self.saved.push(None);
     }
 
+    /// Begins a subprogram, whose parameters are those of its caller.
+    pub(crate) fn enter_subprogram(&mut self) {
+        self.saved.push(None);
+    }
+
     /// Ends a subroutine, with the value that it returns.
     pub(crate) fn leave(&mut self, value: Option<f64>) {
         self.parameters.leave();
         self.return_value(value);
+        self.leave_subprogram();
+    }
+
+    /// Ends a subprogram.
+    pub(crate) fn leave_subprogram(&mut self) {
         if let Some(Some((modal, true))) = self.saved.pop() {
             self.modal = modal;
         }
@@ -175,10 +191,12 @@ impl Lowering {
     }
 
     /// Makes the moves that wait for one that never comes.
-    pub(crate) fn finish(&mut self, moves: &mut VecDeque<Move<3>>) {
+    pub(crate) fn finish(&mut self, moves: &mut VecDeque<Move<3>>) -> Result<(), Fault> {
         if let Some(compensation) = &mut self.compensation {
             compensation.flush(moves);
         }
+        self.check_no_spline()
+            .map_err(|reason| Fault::new(Span::default(), reason.into()))
     }
 
     fn motion(
@@ -192,6 +210,7 @@ impl Lowering {
             Motion::Cycle(_) => self.cycle(block, motion, former, moves),
             Motion::Cubic | Motion::Quadratic => self.spline(block, motion, moves),
             Motion::Nurbs => self.control_point(block),
+            Motion::Knots => self.knot_block(block, moves),
             _ => {
                 self.spline_end = None;
                 self.step(block, motion, moves)

@@ -121,6 +121,55 @@ pub enum MachiningError {
     /// A spline that was begun, and something else before its end.
     #[error("the spline begun by G5.2 is not ended by G5.3")]
     OpenSpline,
+    /// A spline with knots that was begun, and something else before its last knot.
+    #[error("the spline begun by G6.2 has {given} of the {wanted} knots that its points need")]
+    KnotsMissing {
+        /// How many knots there are.
+        given: usize,
+        /// Points and order together.
+        wanted: usize,
+    },
+    /// A block of a spline without its knot.
+    #[error("every block of a spline by G6.2 needs its knot, a K word")]
+    NoKnot,
+    /// An order behind the first block of a spline.
+    #[error("the order P stands in the block of G6.2 only")]
+    NoKnotOrder,
+    /// A control point behind a block that had a knot alone.
+    #[error("a point of the spline behind its last knots")]
+    LatePoint,
+    /// A knot that lies below the one before it.
+    #[error("the knot is {knot}, but the one before it is {before}: knots never fall")]
+    KnotFalls {
+        /// The knot.
+        knot: f64,
+        /// The one before it.
+        before: f64,
+    },
+    /// A spline that would not begin at its first point and end at its last.
+    #[error("the first {order} knots of the spline must be equal, and so must its last {order}")]
+    KnotsNotClamped {
+        /// Order of the spline.
+        order: usize,
+    },
+    /// A knot that would tear the spline apart.
+    #[error("knot {knot} stands more than {most} times, which would tear the spline apart")]
+    KnotRepeated {
+        /// The knot.
+        knot: f64,
+        /// How often it may stand there.
+        most: usize,
+    },
+    /// A spline that begins somewhere else.
+    #[error(
+        "the first point of the spline is {distance} mm from where the tool is, but may be {allowed} mm"
+    )]
+    SplineStart {
+        /// The distance, mm.
+        distance: f64,
+        /// Largest distance, mm.
+        allowed: f64,
+    },
     /// The modal state cannot be restored.
     #[error("there is no saved state to restore")]
     NothingSaved,

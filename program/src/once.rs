@@ -1,7 +1,7 @@
 //! Codes that set the machine up: coordinate systems, offsets, stored points.
 //!
-//! Source: `G10`, `G28` to `G30.1`, `G53` to `G59.3` and `G92` to `G92.3` of RS274/NGC
-//! and LinuxCNC. Parameters hold offsets in mm. Not here: what offsets do to a point.
+//! Source: `G10`, `G28` to `G30.1`, `G52` to `G59.3` and `G92` to `G92.3` of RS274/NGC
+//! and LinuxCNC, where `G52` writes the offsets of `G92`. Parameters hold offsets in mm. Not here: what offsets do to a point.
 
 use crate::block::{AXES, Block};
 use crate::codes::{Code, Group, Motion, Once, ToolLength};
@@ -85,12 +85,15 @@ impl Lowering {
                     self.parameters.put(number, self.position[axis]);
                 }
             }
-            Once::Shift => {
+            Once::Shift | Once::LocalShift => {
                 let mut shift = self.offsets.shift();
                 let mut any = block.has(b'E');
                 for (axis, letter) in AXES.into_iter().enumerate() {
                     if let Some(length) = self.length(block, letter)? {
-                        shift[axis] += self.program[axis] - length;
+                        shift[axis] = match once {
+                            Once::LocalShift => length,
+                            _ => shift[axis] + self.program[axis] - length,
+                        };
                         any = true;
                     }
                 }

@@ -46,6 +46,8 @@ impl Lowering {
         if block.rotary {
             self.turn(block)?;
         }
+        let named = block.has(b'X') && block.has(b'Y') || block.has(b'@') && block.has(b'^');
+        self.arrived = named && self.modal.distance == Distance::Absolute;
         Ok(end)
     }
 

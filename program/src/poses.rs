@@ -48,12 +48,8 @@ impl<R: BufRead> Poses<R> {
             Language::CutterLocations => {
                 Source::Locations(Box::new(CutterLocations::new(reader, file, settings)))
             }
-            Language::Sinumerik => {
-                let program = Program::new(reader, file, settings).in_sinumerik();
-                Source::Axes(Box::new(AxisWords::new(program)))
-            }
-            Language::Ngc => {
-                let program = Program::new(reader, file, settings);
+            Language::Sinumerik | Language::Ngc => {
+                let program = Program::new(reader, file, settings).in_language(language);
                 Source::Axes(Box::new(AxisWords::new(program)))
             }
         };
@@ -65,6 +61,27 @@ impl<R: BufRead> Poses<R> {
     pub fn with_tools(mut self, tools: ToolTable) -> Self {
         if let Source::Axes(axes) = &mut self.source {
             axes.program.lowering.tools = tools;
+        }
+        self
+    }
+
+    /// The same program, with files of subroutines, as [`Program::with_subroutines`].
+    #[must_use]
+    pub fn with_subroutines(
+        mut self,
+        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
+    ) -> Self {
+        if let Source::Axes(axes) = &mut self.source {
+            axes.program.find_subroutines(find);
+        }
+        self
+    }
+
+    /// The same program, for a machine of this name, as [`Program::for_machine`].
+    #[must_use]
+    pub fn for_machine(mut self, name: &str) -> Self {
+        if let Source::Axes(axes) = &mut self.source {
+            axes.program.block.machine = name.into();
         }
         self
     }

@@ -2,22 +2,28 @@
 //!
 //! Not here: the language, see the crate.
 
+use crate::aftermath::Aftermath;
 use crate::block::{Block, FEATURES, O_WORDS};
-use crate::codes::Code;
+use crate::codes::{Code, Group, Subprogram};
 use crate::control::o_word;
 use crate::error::{Fault, ProgramError, Remark, Warning};
 use crate::flow::Flow;
+use crate::language::Language;
 use crate::lexer::check_text;
 use crate::lines::LONGEST_LINE;
 use crate::lower::Lowering;
+use crate::modal::whole;
+use crate::once::missing_of;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
 use crate::sinumerik::Sinumerik;
+use crate::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
 use crate::tools::ToolTable;
 use std::collections::VecDeque;
 use std::io::BufRead;
 use std::iter::FusedIterator;
+use std::sync::Arc;
 use toolglide_kinematics::{Move, Vector};
 
 /// Warnings that are kept; of more, only the number is known, because a program may deserve one
@@ -41,6 +47,7 @@ pub struct Program<R> {
     opened: bool,
     ended: bool,
     past_refusals: bool,
+    aftermath: Aftermath,
     sinumerik: Option<Sinumerik>,
 }
 
@@ -59,6 +66,7 @@ impl<R: BufRead> Program<R> {
             opened: false,
             ended: false,
             past_refusals: false,
+            aftermath: Aftermath::default(),
             sinumerik: None,
         }
     }
@@ -77,7 +85,7 @@ impl<R: BufRead> Program<R> {
         mut self,
         find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
     ) -> Self {
-        self.flow.find = Some(Box::new(find));
+        self.find_subroutines(find);
         self
     }
 
@@ -86,6 +94,28 @@ impl<R: BufRead> Program<R> {
     #[must_use]
     pub fn with_rotary_axes(mut self) -> Self {
         self.block.rotary = true;
+        self
+    }
+
+    /// The same program, with the words of secondary axes U, V and W counted among its features. No
+    /// machine moves them, so that this is for looking at a program only.
+    #[must_use]
+    pub fn with_secondary_axes(mut self) -> Self {
+        self.block.secondary = true;
+        self
+    }
+
+    /// The same program, for a machine of this name: refusals of axes that it has not name it.
+    #[must_use]
+    pub fn for_machine(mut self, name: &str) -> Self {
+        self.block.machine = Arc::from(name);
+        self
+    }
+
+    /// The same program, in a language of axis words: RS274/NGC, as without this, or Sinumerik.
+    #[must_use]
+    pub fn in_language(mut self, language: Language) -> Self {
+        self.sinumerik = (language == Language::Sinumerik).then(Sinumerik::default);
         self
     }
 
@@ -175,8 +205,7 @@ impl<R: BufRead> Program<R> {
             Ok(true) => {}
             Ok(false) => {
                 self.ended = true;
-                self.lowering.finish(&mut self.waiting);
-                return Ok(());
+                return self.lowering.finish(&mut self.waiting);
             }
             Err(reason) => {
                 let at = match reason {
@@ -238,7 +267,34 @@ impl<R: BufRead> Program<R> {
             self.lowering
                 .block(&self.block, line, &mut self.waiting, &mut self.remarks)?;
         if self.ended {
-            self.lowering.finish(&mut self.waiting);
+            self.lowering.finish(&mut self.waiting)?;
+        }
+        match self.block.subprogram {
+            Some(which) => self.subprogram(which),
+            None => Ok(()),
+        }
+    }
+
+    /// `M98` and `M99`, once their block is done.
+    fn subprogram(&mut self, which: Subprogram) -> Result<(), Fault> {
+        let block = &self.block;
+        let span = block.taker(Group::Stop).map(|(_, span)| span);
+        let span = span.unwrap_or_default();
+        let fault = |reason| Fault::new(span, reason);
+        if which == Subprogram::Return {
+            let again = self.flow.return_program();
+            let again = again.map_err(|reason| fault(reason.into()))?;
+            self.lowering.leave_subprogram();
+            if again {
+                self.lowering.enter_subprogram();
+            }
+            return Ok(());
+        }
+        let number = whole(block, b'P', "number of a subprogram", 0, LARGEST_NUMBER)?
+            .ok_or_else(|| missing_of(block, Group::Stop, 'P'))?;
+        let times = whole(block, b'L', "repetitions", 0, MOST_REPETITIONS)?.unwrap_or(1);
+        if self.flow.call_program(number, times).map_err(fault)? {
+            self.lowering.enter_subprogram();
         }
         Ok(())
     }
@@ -253,7 +309,7 @@ impl<R: BufRead> Program<R> {
         self.ended = self.opened || self.blocks > 0;
         self.opened = true;
         if self.ended {
-            self.lowering.finish(&mut self.waiting);
+            self.lowering.finish(&mut self.waiting)?;
         }
         Ok(())
     }
@@ -262,8 +318,9 @@ impl<R: BufRead> Program<R> {
         let mut remarks = std::mem::take(&mut self.remarks);
         for (span, notice) in remarks.drain(..) {
             if self.warnings.len() < MOST_WARNINGS {
-                self.warnings
-                    .push(Warning::new(self.flow.place(span), notice));
+                let place = self.flow.place(span);
+                let warning = Warning::new(place, notice, self.flow.text());
+                self.warnings.push(warning);
             } else {
                 self.more_warnings += 1;
             }
@@ -273,10 +330,11 @@ impl<R: BufRead> Program<R> {
 }
 
 impl<R: BufRead> Program<R> {
-    /// The same program, in the language of Sinumerik.
-    pub(crate) fn in_sinumerik(mut self) -> Self {
-        self.sinumerik = Some(Sinumerik::default());
-        self
+    pub(crate) fn find_subroutines(
+        &mut self,
+        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
+    ) {
+        self.flow.find = Some(Box::new(find));
     }
 
     pub(crate) fn set_past_refusals(&mut self) {
@@ -299,7 +357,12 @@ impl<R: BufRead> Program<R> {
 
     /// Reads one line, and takes what it says.
     pub(crate) fn read_line(&mut self) -> Result<(), ProgramError> {
+        let lost = self.aftermath.place;
+        self.lowering.arrived = false;
         let outcome = self.line();
+        if lost && self.lowering.arrived {
+            self.aftermath.place = false;
+        }
         if !self.remarks.is_empty() {
             self.keep_remarks();
         }
@@ -308,8 +371,11 @@ impl<R: BufRead> Program<R> {
                 self.ended = true;
             }
             self.waiting.clear();
+            let consequence = self.aftermath.explains(&fault.reason, lost);
+            let arrived = self.lowering.arrived;
+            self.aftermath.take(self.flow.text(), arrived);
             let place = self.flow.place(fault.span);
-            ProgramError::new(place, fault.reason)
+            ProgramError::new(place, fault.reason).following(consequence)
         })
     }
 }

@@ -8,6 +8,7 @@ use crate::codes::Code;
 use crate::flow_error::FlowError;
 use crate::machining_error::MachiningError;
 use crate::statement_error::StatementError;
+use std::sync::Arc;
 use thiserror::Error;
 use toolglide_kinematics::ToolpathError;
 
@@ -153,10 +154,12 @@ pub enum Reason {
         letter: char,
     },
     /// The machine has no such axis.
-    #[error("the machine has no axis {letter}")]
+    #[error("{} has no axis {letter}", machine_of(machine))]
     NoSuchAxis {
         /// The letter.
         letter: char,
+        /// Name of the machine; empty where nobody gave one.
+        machine: Arc<str>,
     },
     /// A quantity may not be negative.
     #[error("{quantity} is {value}, but must not be negative")]
@@ -279,4 +282,13 @@ pub enum Reason {
     /// The block cannot be carried out.
     #[error(transparent)]
     Machining(#[from] MachiningError),
+}
+
+/// A machine, by its name where it has one.
+fn machine_of(name: &str) -> String {
+    if name.is_empty() {
+        "the machine".to_owned()
+    } else {
+        format!("machine \"{name}\"")
+    }
 }

@@ -3,9 +3,9 @@
 //! Source: `G5`, `G5.1` and `G5.2` `G5.3` of LinuxCNC. A Bezier curve lies within its control points;
 //! it is halved until they are within a share of the tolerance of a chord, and the moves keep the rest
 //! of the tolerance, so that the motion stays within the whole of it of the true curve. Not here:
-//! splines with knots of their own (`G6.2`).
+//! splines with knots of their own, see `knot_spline`.
 
-use crate::bezier::{MOST_HALVINGS, Weighted, beziers, flatten};
+use crate::bezier::{MOST_HALVINGS, Weighted, beziers, even_knots, flatten};
 use crate::block::Block;
 use crate::codes::{Distance, Group, Motion, PathControl, Plane};
 use crate::error::Fault;
@@ -22,17 +22,27 @@ use toolglide_kinematics::{Feedrate, Move, Tolerance, Vector};
 pub(crate) const CHORD_SHARE: f64 = 0.1;
 
 /// Control points of one spline.
-const MOST_POINTS: usize = 10_000;
+pub(crate) const MOST_POINTS: usize = 10_000;
 
 /// Order of a rational spline where none is written, and the largest.
 const USUAL_ORDER: u32 = 3;
-const LARGEST_ORDER: u32 = 16;
+pub(crate) const LARGEST_ORDER: u32 = 16;
 
 /// A rational spline whose control points are being read.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Nurbs {
     order: usize,
     points: Vec<Weighted>,
+}
+
+/// A point times its weight, and the weight.
+pub(crate) fn weighted(point: Vector<3>, weight: f64) -> Weighted {
+    [
+        point[0] * weight,
+        point[1] * weight,
+        point[2] * weight,
+        weight,
+    ]
 }
 
 impl Lowering {
@@ -77,9 +87,10 @@ impl Lowering {
             self.spline_end = Some([p, q]);
             vec![start, from(start, offset), from(last, [p, q]), last]
         };
+        let height = self.program[2];
         let curve: Vec<Weighted> = points
             .iter()
-            .map(|point| [point[0], point[1], 1.0])
+            .map(|point| [point[0], point[1], height, 1.0])
             .collect();
         let mut chords = Vec::new();
         flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
@@ -97,7 +108,7 @@ impl Lowering {
             return Err(Fault::new(block.span(b'P'), reason));
         }
         let order = whole(block, b'L', "order of the spline", 2, LARGEST_ORDER)?;
-        let weighted = |point: Vector<3>| [point[0] * weight, point[1] * weight, weight];
+        let weighted = |point| weighted(point, weight);
         if self.nurbs.is_none() {
             let order = order.unwrap_or(USUAL_ORDER) as usize;
             self.nurbs = Some(Nurbs {
@@ -141,19 +152,27 @@ impl Lowering {
             return Err(Fault::new(span, reason.into()));
         }
         let mut chords = Vec::new();
-        for curve in beziers(&nurbs.points, order) {
+        let knots = even_knots(given, order);
+        for curve in beziers(&nurbs.points, order, &knots) {
             flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
         }
         self.program = self.offsets.in_program(self.position);
         self.follow(&chords, block, moves)
     }
 
-    /// Between `G5.2` and `G5.3` there are control points only.
+    /// Within a spline there are control points only.
     pub(crate) fn check_open_spline(
         &self,
         block: &Block,
         motion: Option<Motion>,
     ) -> Result<(), Fault> {
+        if let Some(spline) = &self.knot_spline {
+            let goes_on = motion == Some(Motion::Knots) && block.is_plain();
+            if !goes_on || block.motion.is_some() {
+                return Err(Fault::new(motion_span(block), spline.incomplete().into()));
+            }
+            return Ok(());
+        }
         let wrong = motion.is_some_and(|motion| motion != Motion::Nurbs);
         let wrong = wrong || !block.is_plain() || block.motion.is_some_and(|m| m != Motion::Nurbs);
         if self.nurbs.is_some() && wrong && !block.end_of_nurbs {
@@ -163,13 +182,18 @@ impl Lowering {
         Ok(())
     }
 
-    fn check_spline(&self, block: &Block, motion: Motion) -> Result<(), Fault> {
-        let state = if self.modal.plane != Plane::Xy {
+    pub(crate) fn check_spline(&self, block: &Block, motion: Motion) -> Result<(), Fault> {
+        let in_space = motion == Motion::Knots;
+        let state = if self.modal.plane != Plane::Xy && !in_space {
             "outside the plane XY (G17)"
         } else if self.compensation.is_some() {
             "while cutter compensation is on (G40 ends it)"
-        } else if block.first_of(b"Z@^ABC").is_some() {
-            "with words other than X and Y"
+        } else if block.first_of(b"@^ABC").is_some() || block.has(b'Z') && !in_space {
+            if in_space {
+                "with words other than X, Y and Z"
+            } else {
+                "with words other than X and Y"
+            }
         } else if motion != Motion::Quadratic && self.modal.distance == Distance::Incremental {
             "with incremental distances (G91)"
         } else {
@@ -190,16 +214,16 @@ impl Lowering {
     /// Moves along chords, at the feedrate of a block.
     pub(crate) fn follow(
         &mut self,
-        chords: &[[f64; 2]],
+        chords: &[[f64; 3]],
         block: &Block,
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         let span = motion_span(block);
-        let mut at = [self.program[0], self.program[1]];
+        let mut at = self.program;
         let mut length = 0.0;
         for point in chords {
-            length += (point[0] - at[0]).hypot(point[1] - at[1]);
-            at = *point;
+            length += (Vector::from(*point) - at).norm();
+            at = Vector::from(*point);
         }
         let feedrate = self.feedrate(block, length)?;
         if chords.len() > MOST_MOVES as usize {
@@ -217,14 +241,13 @@ impl Lowering {
 
     fn chords(
         &mut self,
-        chords: &[[f64; 2]],
+        chords: &[[f64; 3]],
         feedrate: Feedrate,
         span: Span,
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         for point in chords {
-            let end = Vector::<3>::new(point[0], point[1], self.program[2]);
-            self.go(end, feedrate, span, moves)?;
+            self.go(Vector::from(*point), feedrate, span, moves)?;
         }
         if self.modal.path_control == PathControl::ExactStop
             && let Some(last) = moves.back_mut()

@@ -3,7 +3,7 @@
 //! Source: RS274/NGC, where a word without a use is an error. Not here: what the words say.
 
 use crate::block::{Block, POINT};
-use crate::codes::{Code, Group, Motion, Once, PathControl, Side, ToolLength};
+use crate::codes::{Code, Group, Motion, Once, PathControl, Side, Subprogram, ToolLength};
 use crate::error::{Fault, Notice, Remark};
 use crate::place::Span;
 use crate::reason::Reason;
@@ -21,6 +21,7 @@ impl Motion {
             Self::Cubic => b"IJPQ",
             Self::Quadratic => b"IJ",
             Self::Nurbs => b"PL",
+            Self::Knots => b"PKR",
             Self::Cycle(73 | 83) => b"RLQP",
             Self::Cycle(81 | 85) => b"RL",
             Self::Cycle(87) => b"RLIJK",
@@ -33,7 +34,9 @@ impl Motion {
 /// The code other than a motion that takes the axis words of a block.
 fn taker_of_axes(block: &Block) -> Option<Code> {
     let once = match block.once {
-        Some(Once::SetData | Once::GoHome(_) | Once::Shift) => block.taker(Group::NonModal),
+        Some(Once::SetData | Once::GoHome(_) | Once::Shift | Once::LocalShift) => {
+            block.taker(Group::NonModal)
+        }
         _ => None,
     };
     let length = match block.tool_length {
@@ -60,12 +63,14 @@ pub(crate) fn motion_of(block: &Block, mode: Motion) -> Result<Option<Motion>, F
             None => Ok(None),
         },
         Some(motion) => {
-            let alone = motion.is_arc() || matches!(motion, Motion::Nurbs | Motion::Cycle(_));
+            let spline = matches!(motion, Motion::Nurbs | Motion::Knots);
+            let alone = motion.is_arc() || spline || motion.is_cycle();
             Ok((axis.is_some() || alone).then_some(motion))
         }
         None => {
             let offset = || block.first_of(b"IJKR").filter(|_| mode.is_arc());
-            let Some(letter) = axis.or_else(offset) else {
+            let knot = || block.first_of(b"K").filter(|_| mode == Motion::Knots);
+            let Some(letter) = axis.or_else(offset).or_else(knot) else {
                 return Ok(None);
             };
             if block.once == Some(Once::Dwell) {
@@ -148,18 +153,27 @@ fn users(block: &Block, motion: Option<Motion>, letter: u8) -> impl Iterator<Ite
         _ => None,
     };
     let outside = group(Group::Outside, b"PQLE");
+    let subprogram = match block.subprogram {
+        Some(Subprogram::Call) => group(Group::Stop, b"PL"),
+        _ => None,
+    };
     let motion = motion
         .filter(|motion| motion.uses(letter))
         .map(Motion::code);
     let foreign = block.foreign().filter(|_| b"PQ".contains(&letter));
-    [once, control, motion, side, length, outside, foreign]
-        .into_iter()
-        .flatten()
+    [
+        once, control, motion, side, length, outside, subprogram, foreign,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// Where the cause of the motion stands: its code, or its first word.
 pub(crate) fn motion_span(block: &Block) -> Span {
-    match (block.taker(Group::Motion), block.first_of(b"XYZ@^ABCIJKR")) {
+    match (
+        block.taker(Group::Motion),
+        block.first_of(b"XYZ@^ABCUVWIJKR"),
+    ) {
         (Some((_, span)), _) => span,
         (None, Some(letter)) => block.span(letter),
         (None, None) => Span::default(),

@@ -44,6 +44,8 @@ fn programs_of_straight_axes_are_read_strictly() {
         ("compensation.ngc", 20),
         ("splines.ngc", 756),
         ("polar.ngc", 20),
+        ("subprograms.ngc", 20),
+        ("knots.ngc", 258),
     ] {
         assert_eq!(moves(file), expected, "{file}");
     }

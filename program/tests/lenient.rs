@@ -52,9 +52,8 @@ fn words_that_move_no_axis_become_warnings() {
 fn words_that_may_move_an_axis_stay_refused() {
     for line in [
         "G43.4 H1",
-        "G52 X0",
         "G76 Z-1 R1",
-        "M98 P1000",
+        "M97 P1000",
         "M428",
         "G0 A5",
         "G0 U1",

@@ -454,3 +454,27 @@ fn words_of_printers_are_skipped_with_one_warning() {
     let (.., reason) = refusal("M201 X1");
     assert!(matches!(reason, Reason::UnknownCode { .. }), "{reason}");
 }
+
+#[test]
+fn a_local_shift_is_written_where_g92_writes() {
+    let text = "G0 X10 Y10\nG52 X1 Y2\nX0 Y0\nG92 X5\nX6\nG52 X3\nX0 Y0\nG52 Y0\nY1\nG92.1\nX0 Y0";
+    assert_ends(
+        text,
+        &[
+            [10.0, 10.0, 0.0],
+            [1.0, 2.0, 0.0],
+            [2.0, 2.0, 0.0],
+            [3.0, 2.0, 0.0],
+            [3.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0],
+        ],
+    );
+    assert_ends("G20 G52 X1\nG21 G0 X0 Y#5211", &[[25.4, 25.4, 0.0]]);
+    let turned = "G10 L2 P1 X5 R90\nG52 X2\nG0 X1 Y0";
+    assert_ends(turned, &[[5.0, 3.0, 0.0]]);
+    let (.., reason) = refusal("G52");
+    assert!(
+        matches!(reason, Reason::Machining(MachiningError::Companion { .. })),
+        "{reason}"
+    );
+}
