@@ -10,6 +10,9 @@ use std::path::PathBuf;
 use toolglide_machines::ModeConfig;
 use toolglide_optimal::Effort;
 
+/// Names of the languages of programs.
+const DIALECTS: [&str; 3] = ["ngc", "840d", "cl"];
+
 /// Plans smooth motion for machine tools and judges it.
 #[derive(Debug, Parser)]
 #[command(name = "toolglide", version, about, max_term_width = 100)]
@@ -54,6 +57,9 @@ pub(crate) struct JobArgs {
     /// Registered machine, or machine file.
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "gantry")]
     pub(crate) machine: String,
+    /// Language of the program [default: by its name and its first lines].
+    #[arg(long, value_parser = DIALECTS)]
+    pub(crate) dialect: Option<String>,
     /// Corner tolerance, mm; overrides the machine and the P of G64 in the program.
     #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
@@ -187,7 +193,7 @@ pub(crate) struct CheckArgs {
     #[arg(value_name = "PROGRAM")]
     pub(crate) program: PathBuf,
     /// Language of the program [default: by its name and its first lines].
-    #[arg(long, value_parser = ["ngc", "840d", "cl"])]
+    #[arg(long, value_parser = DIALECTS)]
     pub(crate) dialect: Option<String>,
     /// Tolerance where the program asks for none, mm: splines become chords within it.
     #[arg(long, value_name = "MM", value_parser = positive, default_value = "0.01", allow_hyphen_values = true)]

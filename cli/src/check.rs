@@ -7,10 +7,10 @@ use crate::error::{CliError, DONE, REFUSED};
 use crate::interrupt::check_interrupt;
 use crate::source::{Source, subroutines, tools};
 use crate::survey::{Remark, Survey};
-use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, Title};
 use std::io::{BufRead, Write};
 use toolglide_kinematics::Tolerance;
-use toolglide_program::{Language, Poses, Program, ProgramError, Settings};
+use toolglide_program::{Language, Place, Poses, Program, ProgramError, Reason, Settings, Warning};
 
 /// Errors that are shown; of more, only the number is told.
 const MOST_ERRORS: usize = 100;
@@ -34,17 +34,8 @@ pub(crate) fn check(
         lenient: args.lenient,
         ..Settings::new(tolerance)
     };
-    let mut source = Source::open(&args.program)?;
-    let language = match args.dialect.as_deref().and_then(Language::named) {
-        Some(language) => language,
-        None => {
-            let beginning = source.reader.fill_buf().map_err(|reason| CliError::Read {
-                file: args.program.clone(),
-                reason,
-            })?;
-            Language::of(&args.program, beginning)
-        }
-    };
+    let source = Source::open(&args.program, args.dialect.as_deref())?;
+    let language = source.language;
     let mut seen = Seen {
         survey: Survey {
             program: source.name.clone(),
@@ -60,11 +51,13 @@ pub(crate) fn check(
             .with_tools(tools)
             .with_subroutines(subroutines(&args.program))
             .with_rotary_axes()
+            .with_secondary_axes()
             .past_refusals();
         seen.read(program)?;
     } else {
         let poses = Poses::new(source.reader, &source.name, settings, language)
             .with_tools(tools)
+            .with_subroutines(subroutines(&args.program))
             .past_refusals();
         seen.read_poses(poses)?;
     }
@@ -109,7 +102,7 @@ impl Seen<'_> {
         survey.features = program.features().map(str::to_owned).collect();
         survey.warnings = program.warnings().iter().map(Remark::of_warning).collect();
         survey.more_warnings = program.more_warnings();
-        self.show_warnings();
+        self.finish(program.warnings());
         Ok(())
     }
 
@@ -128,7 +121,7 @@ impl Seen<'_> {
         survey.name_codes(poses.codes().into_iter());
         survey.warnings = poses.warnings().iter().map(Remark::of_warning).collect();
         survey.more_warnings = poses.more_warnings();
-        self.show_warnings();
+        self.finish(poses.warnings());
         Ok(())
     }
 
@@ -140,25 +133,52 @@ impl Seen<'_> {
         Ok(())
     }
 
-    /// Keeps and shows a refusal.
+    /// Keeps and shows a refusal, unless it follows from one before it or says the same.
     fn refuse(&mut self, error: &ProgramError, line: &str) {
+        if error.is_consequence() {
+            self.survey.consequences += 1;
+            return;
+        }
+        let remark = Remark::of_error(error);
+        let alike = |other: &&mut Remark| other.is_like(&remark, says_all(error.reason()));
+        if let Some(other) = self.survey.errors.iter_mut().find(alike) {
+            other.again(remark.line);
+            return;
+        }
         if self.survey.errors.len() >= MOST_ERRORS {
             self.survey.more_errors += 1;
             return;
         }
-        self.survey.errors.push(Remark::of_error(error));
+        self.survey.errors.push(remark);
         if !self.quiet {
-            let _ = writeln!(self.err, "{}\n", shown(error, line));
+            let title = Level::ERROR.primary_title(error.reason().to_string());
+            let _ = writeln!(self.err, "{}\n", shown(title, error.place(), line));
         }
     }
 
-    fn show_warnings(&mut self) {
+    fn finish(&mut self, warnings: &[Warning]) {
         if self.quiet {
             return;
         }
-        for warning in &self.survey.warnings {
-            let place = format!("{}:{}:{}", warning.file, warning.line, warning.column);
-            let _ = writeln!(self.err, "warning: {place}: {}", warning.message);
+        for (remark, warning) in self.survey.warnings.iter().zip(warnings) {
+            let message = remark.message.clone();
+            let title = Level::WARNING.primary_title(message);
+            let text = shown(title, warning.place(), warning.line_text());
+            let _ = writeln!(self.err, "{text}\n");
+        }
+        for error in &self.survey.errors {
+            if let Some(more) = error.more() {
+                let _ = writeln!(self.err, "{more}");
+            }
+        }
+        match self.survey.consequences {
+            0 => {}
+            1 => {
+                let _ = writeln!(self.err, "and 1 refusal that may follow from these");
+            }
+            more => {
+                let _ = writeln!(self.err, "and {more} refusals that may follow from these");
+            }
         }
         if self.survey.more_warnings > 0 {
             let _ = writeln!(self.err, "and {} more warnings", self.survey.more_warnings);
@@ -169,22 +189,34 @@ impl Seen<'_> {
     }
 }
 
-/// A refusal with its line and a caret.
-fn shown(error: &ProgramError, line: &str) -> String {
+/// Whether the message of a refusal says all that there is to know of it, so that once is enough.
+fn says_all(reason: &Reason) -> bool {
+    matches!(
+        reason,
+        Reason::NoSuchAxis { .. }
+            | Reason::NotSupported { .. }
+            | Reason::UnknownCode { .. }
+            | Reason::UnknownWord { .. }
+            | Reason::NoFeedrate
+            | Reason::NoInverseTime
+    )
+}
+
+/// A refusal or a warning with its line and a caret.
+fn shown(title: Title<'_>, place: &Place, line: &str) -> String {
     let byte = |characters: u32| {
         let index = characters as usize;
         line.char_indices()
             .nth(index)
             .map_or(line.len(), |(at, _)| at)
     };
-    let first = error.column().saturating_sub(1);
-    let (start, end) = (byte(first), byte(first.saturating_add(error.length())));
-    let number = usize::try_from(error.line()).unwrap_or(usize::MAX);
-    let message = error.reason().to_string();
-    let report = [Level::ERROR.primary_title(message).element(
+    let first = place.column().saturating_sub(1);
+    let (start, end) = (byte(first), byte(first.saturating_add(place.length())));
+    let number = usize::try_from(place.line()).unwrap_or(usize::MAX);
+    let report = [title.element(
         Snippet::source(line)
             .line_start(number)
-            .path(error.file())
+            .path(place.file())
             .annotation(AnnotationKind::Primary.span(start..end)),
     )];
     Renderer::plain().render(&report)

@@ -53,6 +53,8 @@ pub(crate) fn moves<const N: usize>(
     };
     Moves {
         program: Program::new(source.reader, &source.name, settings)
+            .in_language(source.language)
+            .for_machine(&setup.machine)
             .with_tools(setup.tools.clone())
             .with_subroutines(subroutines(&job.program)),
         name: source.name,
@@ -84,7 +86,7 @@ where
     ) -> Result<u8, CliError> {
         let method = args.method.as_deref().unwrap_or(METHODS[0].name);
         let mut files = PlanFiles::begin(args)?;
-        let source = Source::open(&args.job.program)?;
+        let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
         let name = source.name.clone();
         let start = setup.start::<N>();
         let limits = setup.limits::<N>();

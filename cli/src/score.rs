@@ -49,7 +49,7 @@ fn run<const N: usize>(
 where
     Move<N>: OnAxes,
 {
-    let source = Source::open(&args.job.program)?;
+    let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
     let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let limits = setup.limits::<N>();

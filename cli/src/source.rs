@@ -3,9 +3,9 @@
 use crate::error::CliError;
 use crate::progress::Watched;
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-use toolglide_program::ToolTable;
+use toolglide_program::{Language, ToolTable};
 
 /// Bytes that are read at once.
 const CHUNK: usize = 1 << 16;
@@ -16,22 +16,39 @@ pub(crate) struct Source {
     pub(crate) reader: BufReader<Box<dyn Read>>,
     /// Its name in messages.
     pub(crate) name: String,
+    /// Its language.
+    pub(crate) language: Language,
 }
 
 impl Source {
-    /// Opens a program, or standard input for `-`.
-    pub(crate) fn open(path: &Path) -> Result<Self, CliError> {
-        if path == Path::new("-") {
+    /// Opens a program, or standard input for `-`; its language is the dialect that the command line
+    /// names, or what the program looks like.
+    pub(crate) fn open(path: &Path, dialect: Option<&str>) -> Result<Self, CliError> {
+        let (text, name): (Box<dyn Read>, _) = if path == Path::new("-") {
             let watched = Watched::new(std::io::stdin(), None);
-            return Ok(Self {
-                reader: BufReader::with_capacity(CHUNK, Box::new(watched)),
-                name: "standard input".to_owned(),
-            });
-        }
-        let (file, length) = open_file(path)?;
+            (Box::new(watched), "standard input".to_owned())
+        } else {
+            let (file, length) = open_file(path)?;
+            (
+                Box::new(Watched::new(file, length)),
+                path.display().to_string(),
+            )
+        };
+        let mut reader = BufReader::with_capacity(CHUNK, text);
+        let language = match dialect.and_then(Language::named) {
+            Some(language) => language,
+            None => {
+                let beginning = reader.fill_buf().map_err(|reason| CliError::Read {
+                    file: path.to_owned(),
+                    reason,
+                })?;
+                Language::of(path, beginning)
+            }
+        };
         Ok(Self {
-            reader: BufReader::with_capacity(CHUNK, Box::new(Watched::new(file, length))),
-            name: path.display().to_string(),
+            reader,
+            name,
+            language,
         })
     }
 }
@@ -48,6 +65,25 @@ pub(crate) fn open_file(path: &Path) -> Result<(File, Option<u64>), CliError> {
     }
     let file = File::open(path).map_err(refuse)?;
     Ok((file, found.is_file().then_some(found.len())))
+}
+
+/// The language of a program, by the first bytes of its file; standard input, which can be read only
+/// once, tells nothing yet.
+pub(crate) fn language(path: &Path, dialect: Option<&str>) -> Result<Language, CliError> {
+    if let Some(language) = dialect.and_then(Language::named) {
+        return Ok(language);
+    }
+    let refused = |reason| CliError::Read {
+        file: path.to_owned(),
+        reason,
+    };
+    let mut beginning = Vec::new();
+    if std::fs::metadata(path).is_ok_and(|found| found.is_file()) {
+        let (file, _) = open_file(path)?;
+        let first = file.take(CHUNK as u64).read_to_end(&mut beginning);
+        first.map_err(refused)?;
+    }
+    Ok(Language::of(path, &beginning))
 }
 
 /// Bytes of a file of subroutines or of a tool table that are read at most.

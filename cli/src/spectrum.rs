@@ -144,7 +144,7 @@ where
 {
     let modes = excited(setup)?;
     let tuning = Tuning::of(&args.tuning, setup)?;
-    let source = Source::open(&args.job.program)?;
+    let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
     let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let frequencies = frequencies(&modes);

@@ -10,6 +10,9 @@ use toolglide_program::{Code, ProgramError, Warning};
 /// One minute, s.
 const MINUTE: f64 = 60.0;
 
+/// Lines that are told beside the first one that says the same.
+const MOST_LINES: usize = 10;
+
 /// Points of an arc that its extent is taken from.
 const ARC_POINTS: u32 = 64;
 
@@ -38,6 +41,8 @@ pub(crate) struct Survey {
     pub(crate) more_warnings: u64,
     pub(crate) errors: Vec<Remark>,
     pub(crate) more_errors: u64,
+    /// Refusals that may follow from those before them.
+    pub(crate) consequences: u64,
     #[serde(skip)]
     pub(crate) at: Vector<3>,
 }
@@ -51,6 +56,9 @@ pub(crate) struct Remark {
     pub(crate) length: u32,
     pub(crate) word: String,
     pub(crate) message: String,
+    /// How often it was said, and on which other lines at first.
+    pub(crate) times: u64,
+    pub(crate) more_lines: Vec<u64>,
 }
 
 impl Remark {
@@ -62,7 +70,44 @@ impl Remark {
             length: error.length(),
             word: error.word().to_owned(),
             message: error.reason().to_string(),
+            times: 1,
+            more_lines: Vec::new(),
         }
+    }
+
+    /// Whether another remark says the same: at the same place, or anywhere if its message says all.
+    pub(crate) fn is_like(&self, other: &Self, anywhere: bool) -> bool {
+        let there = self.line == other.line && self.column == other.column;
+        self.message == other.message && self.file == other.file && (anywhere || there)
+    }
+
+    /// The same again, on a line.
+    pub(crate) fn again(&mut self, line: u64) {
+        self.times += 1;
+        if self.more_lines.len() < MOST_LINES {
+            self.more_lines.push(line);
+        }
+    }
+
+    /// Where it was said again, for people.
+    pub(crate) fn more(&self) -> Option<String> {
+        let more = self.times.checked_sub(1).filter(|&more| more > 0)?;
+        let mut lines = self.more_lines.clone();
+        lines.dedup();
+        let rest = if more > self.more_lines.len() as u64 {
+            ", ..."
+        } else {
+            ""
+        };
+        let mut text = format!("line {}: the same {more} more times", self.line);
+        if more == 1 {
+            text = format!("line {}: the same once more", self.line);
+        }
+        if lines != [self.line] {
+            let lines: Vec<String> = lines.iter().map(u64::to_string).collect();
+            let _ = write!(text, ", on line {}{rest}", lines.join(", "));
+        }
+        Some(text)
     }
 
     pub(crate) fn of_warning(warning: &Warning) -> Self {
@@ -74,6 +119,8 @@ impl Remark {
             length: place.length(),
             word: place.word().to_owned(),
             message: warning.notice().to_string(),
+            times: 1,
+            more_lines: Vec::new(),
         }
     }
 }
@@ -164,7 +211,8 @@ impl Survey {
     /// The survey as text.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
-        let refused = self.errors.len() as u64 + self.more_errors;
+        let told: u64 = self.errors.iter().map(|error| error.times).sum();
+        let refused = told + self.more_errors;
         let _ = writeln!(text, "{}: read as {}\n", self.program, self.dialect);
         let mut row = |name: &str, value: String| {
             let _ = writeln!(text, "{name:<12} {value}");
@@ -215,12 +263,16 @@ impl Survey {
         }
         let warnings = self.warnings.len() as u64 + self.more_warnings;
         row("warnings", warnings.to_string());
+        let follow = match self.consequences {
+            0 => String::new(),
+            more => format!(", and {more} that may follow"),
+        };
         row(
             "verdict",
             match refused {
                 0 => "every line is read".to_owned(),
-                1 => "1 line is refused".to_owned(),
-                _ => format!("{refused} lines are refused"),
+                1 => format!("1 line is refused{follow}"),
+                _ => format!("{refused} lines are refused{follow}"),
             },
         );
         text

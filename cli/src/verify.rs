@@ -67,7 +67,7 @@ where
             bound: "this is the program".to_owned(),
         });
     }
-    let source = Source::open(&args.job.program)?;
+    let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
     let resolution = resolution::<N>(file, setup)?;
     let judge = SetPointJudge::new(setup.start::<N>(), setup.limits(), resolution);

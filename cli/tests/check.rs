@@ -8,7 +8,7 @@ use common::{Folder, SQUARE, toolglide};
 
 /// A program with a mistake of every kind on a line of its own.
 const WRONG: &str =
-    "G21 G90\nF600\nG1 X[1+\nG0 X#<depth> Y1\nG2 X5 R1\nG95\no1 endif\nG43 H9\nG1 X5\nM2\n";
+    "G21 G90\nF600\nS[1+\nG0 F#<depth>\nG2 X5 R1\nG95\no1 endif\nG43 H9\nG1 X5\nM2\n";
 
 #[test]
 fn a_program_is_described() {
@@ -89,4 +89,48 @@ fn subroutines_stand_in_files_beside_the_program() {
     );
     let run = toolglide(&["check", &program, "--tool-table", &program]);
     assert!(run.code == 2 && run.err.contains("line 1:"), "{}", run.err);
+}
+
+#[test]
+fn warnings_are_shown_with_their_line_too() {
+    let folder = Folder::new();
+    let program = folder.write(
+        "part.ngc",
+        "G21 F600\nM106 S255\nG1 X5 E0.2\nT3 M6 G43\nM2\n",
+    );
+    let run = toolglide(&["check", &program]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    insta::assert_snapshot!(run.err.replace(&program, "part.ngc"));
+}
+
+#[test]
+fn one_cause_is_shown_once() {
+    let folder = Folder::new();
+    let text = "G21 G90\nG1 X1\nX2\nG1 F100 Y1 ~\nX3\nX4\no1 repeat [3]\nG95\no1 endrepeat\nG96 S9\nG96\nM2\n";
+    let program = folder.write("part.ngc", text);
+    let run = toolglide(&["check", &program]);
+    assert_eq!(run.code, 2, "{}", run.err);
+    insta::assert_snapshot!(run.err.replace(&program, "part.ngc"));
+    let run = toolglide(&["check", &program, "--json"]);
+    let survey: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(survey["errors"].as_array().unwrap().len(), 4, "errors");
+    assert_eq!(survey["consequences"], 3, "consequences");
+    assert_eq!(survey["errors"][2]["times"], 3, "times");
+}
+
+#[test]
+fn secondary_axes_are_counted_though_no_machine_moves_them() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", "G21 F600\nG1 X5 U2\nU4\nM2\n");
+    let run = toolglide(&["check", &program]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(
+        run.out.contains("beside them  secondary axes U V W"),
+        "{}",
+        run.out
+    );
+    let run = toolglide(&["plan", &program]);
+    assert_eq!(run.code, 2, "{}", run.out);
+    let expected = "machine \"gantry\" has no axis U";
+    assert!(run.err.contains(expected), "{}", run.err);
 }

@@ -292,3 +292,28 @@ fn a_motion_of_many_pieces_from_one_move_is_complete() {
     assert!((planned - length).abs() < 1e-6, "{planned}");
     assert!(!run.err.contains("end"), "it comes to its end: {}", run.err);
 }
+
+#[test]
+fn the_language_of_a_program_can_be_said() {
+    let folder = Folder::new();
+    let text = "N10 DEF REAL DEEP=4\nN20 G0 X10\nN30 G1 X=DEEP*10 F600\nN40 M30\n";
+    let program = folder.write("part.txt", text);
+    let run = toolglide(&["plan", &program, "--dialect", "840d"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.contains("part.txt"), "{}", run.out);
+    let run = toolglide(&["plan", &program]);
+    assert_eq!(run.code, 2, "RS274/NGC has no DEF: {}", run.out);
+    let program = folder.write("part.mpf", text);
+    for command in ["plan", "compare"] {
+        let run = toolglide(&[command, &program]);
+        assert_eq!(run.code, 0, "{command} knows it by its name: {}", run.err);
+    }
+    let poses = folder.write(
+        "poses.txt",
+        "UNITS/MM\nFEDRAT/600\nGOTO/1,2,0\nGOTO/9,2,0\nFINI\n",
+    );
+    for more in [&[][..], &["--dialect", "cl"]] {
+        let run = toolglide(&[&["plan", &poses], more].concat());
+        assert_eq!(run.code, 0, "{}", run.err);
+    }
+}

@@ -6,7 +6,7 @@ use crate::args::{JobArgs, TuningArgs};
 use crate::error::CliError;
 use crate::filters;
 use crate::setup::{Setup, is_straight, machine};
-use crate::source::Source;
+use crate::source::{Source, language, subroutines};
 use std::collections::VecDeque;
 use std::io::BufRead;
 
@@ -31,7 +31,7 @@ const BEYOND: f64 = 1e-3;
 /// program is a file of tool poses.
 pub(crate) fn concerns(job: &JobArgs) -> Result<bool, CliError> {
     let (config, machine) = machine(&job.machine)?;
-    let language = Language::of(&job.program, b"");
+    let language = language(&job.program, job.dialect.as_deref())?;
     Ok(!is_straight(&config, machine.as_ref()) || language == Language::CutterLocations)
 }
 
@@ -98,12 +98,11 @@ impl Inputs {
 
     /// Opens the program; its first pose is where the motion starts, unless that is known.
     pub(crate) fn open(&self, job: &JobArgs) -> Result<Legs<'_>, CliError> {
-        let Source { mut reader, name } = Source::open(&job.program)?;
-        let beginning = reader.fill_buf().map_err(|reason| CliError::Read {
-            file: job.program.clone(),
-            reason,
-        })?;
-        let language = Language::of(&job.program, beginning);
+        let Source {
+            reader,
+            name,
+            language,
+        } = Source::open(&job.program, job.dialect.as_deref())?;
         let start = AxisVector::from_slice(self.setup.start_positions())
             .map_err(|reason| refused(&name, 0, FiveAxisError::Machine { index: 0, reason }))?;
         let pose = self
@@ -118,7 +117,10 @@ impl Inputs {
         };
         let boxed: Box<dyn BufRead> = Box::new(reader);
         let mut legs = Legs {
-            program: Poses::new(boxed, &name, settings, language),
+            program: Poses::new(boxed, &name, settings, language)
+                .with_tools(self.setup.tools.clone())
+                .with_subroutines(subroutines(&job.program))
+                .for_machine(&self.setup.machine),
             resolver: None,
             machine: self.machine.as_ref(),
             orientation_tolerance: self.orientation_tolerance,
