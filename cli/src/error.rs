@@ -4,6 +4,7 @@
 
 use std::path::PathBuf;
 use thiserror::Error;
+use toolglide_fir::FirError;
 use toolglide_kinematics::PlanError;
 use toolglide_machines::MachineError;
 use toolglide_program::ProgramError;
@@ -24,6 +25,9 @@ pub enum CliError {
     /// The machine is refused.
     #[error(transparent)]
     Machine(#[from] MachineError),
+    /// The filters are refused, whoever asked for them.
+    #[error("filters, of --fir or of fir_s or [[mode]] of the machine file: {0}")]
+    Filters(FirError),
     /// An option has a value that it must not have.
     #[error("{option}: {value} was given, but {bound}")]
     Option {

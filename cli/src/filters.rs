@@ -6,7 +6,7 @@
 use crate::args::TuningArgs;
 use crate::error::CliError;
 use crate::setup::Setup;
-use toolglide_fir::{FilterChain, FirError, Mode};
+use toolglide_fir::{FilterChain, Mode};
 
 /// The chain of a run; `None` where the planner chooses.
 pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterChain>, CliError> {
@@ -16,7 +16,7 @@ pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterCha
         return FilterChain::with_time_constants(time_constants)
             .and_then(|chain| chain.rounded_to(setup.period))
             .map(Some)
-            .map_err(refused);
+            .map_err(CliError::Filters);
     }
     if setup.modes.is_empty() {
         return Ok(None);
@@ -24,7 +24,7 @@ pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterCha
     // Axes that vibrate alike need one filter.
     let mut modes = Vec::<Mode>::new();
     for mode in &setup.modes {
-        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(refused)?;
+        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(CliError::Filters)?;
         if !modes.contains(&mode) {
             modes.push(mode);
         }
@@ -36,7 +36,7 @@ pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterCha
     };
     FilterChain::silencing(&modes, further.as_slice(), setup.period)
         .map(Some)
-        .map_err(refused)
+        .map_err(CliError::Filters)
 }
 
 /// Jerk is bounded by a second filter; twice the time that it takes to change the acceleration, because
@@ -47,13 +47,4 @@ fn further(setup: &Setup) -> Option<f64> {
         .iter()
         .map(|axis| 2.0 * axis.limits.acceleration() / axis.limits.jerk())
         .reduce(f64::max)
-}
-
-/// A refused filter as the command line says it.
-pub(crate) fn refused(reason: FirError) -> CliError {
-    CliError::Option {
-        option: "--fir",
-        value: "filters".to_owned(),
-        bound: reason.to_string(),
-    }
 }

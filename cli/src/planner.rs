@@ -4,7 +4,7 @@
 
 use crate::args::TuningArgs;
 use crate::error::CliError;
-use crate::filters::{chain, refused};
+use crate::filters::chain;
 use crate::setup::Setup;
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
@@ -114,7 +114,7 @@ pub(crate) fn planner<const N: usize>(
     if let Some(method) = toolglide_fir::Method::find(method) {
         let mut settings = toolglide_fir::Settings::new(limits).with_method(method);
         if let Some(chain) = &tuning.filters {
-            settings = settings.with_chain(chain).map_err(refused)?;
+            settings = settings.with_chain(chain).map_err(CliError::Filters)?;
         }
         return Ok(Box::new(FirInterpolation::new(start, &settings)));
     }

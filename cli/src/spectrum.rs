@@ -7,7 +7,6 @@
 use crate::args::SpectrumArgs;
 use crate::drawing::Drawing;
 use crate::error::CliError;
-use crate::filters;
 use crate::pipeline::Lane;
 use crate::plan::{moves, title, warn};
 use crate::planner::{Tuning, chosen, planner};
@@ -67,7 +66,7 @@ impl Oscillators {
     fn new(modes: &[Excited], axes: &[usize], frequencies: &[f64]) -> Result<Self, CliError> {
         let spectrum = frequencies
             .iter()
-            .map(|&frequency| Resonator::at_frequency(frequency).map_err(filters::refused))
+            .map(|&frequency| Resonator::at_frequency(frequency).map_err(CliError::Filters))
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             modes: modes

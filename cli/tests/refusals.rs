@@ -284,3 +284,28 @@ fn what_lies_outside_the_travel_is_told_with_its_line() {
         "--start: X = -1 was given, but the travel of this axis is 0 to 30",
     );
 }
+
+#[test]
+fn filters_that_no_motion_can_pass() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", SQUARE);
+    for (lengths, reason) in [
+        ("0.05", "one filter alone, of 0.05 s"),
+        (
+            "1e9,1",
+            "time constant is 1000000000 s, but 10 s is the longest",
+        ),
+        ("0.05,0.0001", "shorter than half the period"),
+        (
+            "1,1,1,1,1,1,1,1,1",
+            "a chain has 1 to 8 filters, but 9 were given",
+        ),
+    ] {
+        refused(
+            &folder,
+            &program,
+            &["--method", "fir", "--fir", lengths],
+            reason,
+        );
+    }
+}

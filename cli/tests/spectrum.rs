@@ -86,7 +86,7 @@ fn modes_and_filters_that_cannot_be_are_refused_with_their_values() {
         ),
         (
             &["--mode", "X,7.4", "--fir", "0.05"],
-            "1 filters were given, but a chain has 2 to 8",
+            "one filter alone, of 0.05 s, leaves jerk without a bound",
         ),
         (&["--mode", "X,7.4", "--fir", "0.05,0"], "0 is not positive"),
         (
@@ -100,7 +100,7 @@ fn modes_and_filters_that_cannot_be_are_refused_with_their_values() {
         ),
         (
             &["--mode", "X,7.4", "--fir", "1,1,1,1,1,1,1,1,1"],
-            "9 filters were given, but a chain has 1 to 8",
+            "a chain has 1 to 8 filters, but 9 were given",
         ),
     ] {
         let mut arguments = vec!["spectrum", STAR];

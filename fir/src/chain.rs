@@ -11,6 +11,10 @@ use toolglide_kinematics::nalgebra::Complex;
 /// doubles them.
 pub const MOST_FILTERS: usize = 8;
 
+/// Longest time constant, s: one period of 0.1 Hz, far below the modes of any machine. Positions are
+/// cubic in time, so that behind much longer filters they would lose nanometres.
+pub const LONGEST_TIME_CONSTANT: f64 = 10.0;
+
 /// A product of angular frequency and time constant below this leaves a filter without effect: its
 /// gain differs from 1 by less than the rounding.
 const NO_EFFECT: f64 = 1e-8;
@@ -46,13 +50,13 @@ impl FilterChain {
     ///
     /// # Errors
     /// [`FirError::FilterCount`] for none or for more than [`MOST_FILTERS`],
-    /// [`FirError::NotPositive`] for a time constant that is not positive and finite.
+    /// [`FirError::NotPositive`] for a time constant that is not positive and finite,
+    /// [`FirError::TooLong`] for one above [`LONGEST_TIME_CONSTANT`].
     pub fn with_time_constants(time_constants: &[f64]) -> Result<Self, FirError> {
         let given = time_constants.len();
         if !(1..=MOST_FILTERS).contains(&given) {
             return Err(FirError::FilterCount {
                 given,
-                least: 1,
                 most: MOST_FILTERS,
             });
         }
@@ -61,6 +65,14 @@ impl FilterChain {
                 return Err(FirError::NotPositive {
                     quantity: "time constant",
                     value,
+                });
+            }
+        }
+        for &time_constant in time_constants {
+            if time_constant > LONGEST_TIME_CONSTANT {
+                return Err(FirError::TooLong {
+                    time_constant,
+                    longest: LONGEST_TIME_CONSTANT,
                 });
             }
         }
@@ -194,6 +206,14 @@ mod tests {
         assert!(
             FilterChain::with_time_constants(&[f64::NAN]).is_err(),
             "NaN"
+        );
+        assert_eq!(
+            FilterChain::with_time_constants(&[0.1, 1e9]),
+            Err(FirError::TooLong {
+                time_constant: 1e9,
+                longest: LONGEST_TIME_CONSTANT
+            }),
+            "too long"
         );
         for given in [0, 9] {
             assert!(

@@ -60,10 +60,8 @@ impl CubicChain {
     pub(crate) fn of(chain: &FilterChain) -> Result<Self, FirError> {
         let lengths = chain.time_constants();
         let &[long, short, ref rest @ ..] = lengths else {
-            return Err(FirError::FilterCount {
-                given: lengths.len(),
-                least: 2,
-                most: crate::MOST_FILTERS,
+            return Err(FirError::SingleFilter {
+                time_constant: lengths[0],
             });
         };
         let mut two = Self::of_two(long, short);
@@ -301,10 +299,7 @@ mod tests {
     fn one_filter_has_no_bounded_jerk_and_is_refused() {
         let chain = FilterChain::with_time_constants(&[0.1]).unwrap();
         assert!(
-            matches!(
-                CubicChain::of(&chain),
-                Err(FirError::FilterCount { given: 1, .. })
-            ),
+            matches!(CubicChain::of(&chain), Err(FirError::SingleFilter { .. })),
             "one filter"
         );
     }

@@ -17,14 +17,29 @@ pub enum FirError {
         value: f64,
     },
     /// A chain has at least one filter and at most [`MOST_FILTERS`](crate::MOST_FILTERS).
-    #[error("{given} filters were given, but a chain has {least} to {most}")]
+    #[error("a chain has 1 to {most} filters, but {given} were given")]
     FilterCount {
         /// How many were given.
         given: usize,
-        /// Fewest that serve.
-        least: usize,
         /// Most that serve.
         most: usize,
+    },
+    /// Behind a single filter acceleration jumps, which no limit of jerk allows.
+    #[error(
+        "one filter alone, of {time_constant} s, leaves jerk without a bound; \
+         motion needs a second filter"
+    )]
+    SingleFilter {
+        /// Its time constant, s.
+        time_constant: f64,
+    },
+    /// A time constant is at most [`LONGEST_TIME_CONSTANT`](crate::LONGEST_TIME_CONSTANT).
+    #[error("time constant is {time_constant} s, but {longest} s is the longest")]
+    TooLong {
+        /// What was given, s.
+        time_constant: f64,
+        /// The longest, s.
+        longest: f64,
     },
     /// Nothing is left of a filter that is shorter than half a period.
     #[error(

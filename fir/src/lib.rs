@@ -26,7 +26,7 @@ mod tick_pulse;
 mod ticks;
 mod train;
 
-pub use chain::{FilterChain, MOST_FILTERS};
+pub use chain::{FilterChain, LONGEST_TIME_CONSTANT, MOST_FILTERS};
 pub use circle::largest_circle_feed;
 pub use error::FirError;
 pub use mode::Mode;

@@ -72,7 +72,7 @@ impl<const N: usize> Settings<N> {
     /// allow.
     ///
     /// # Errors
-    /// [`FirError::FilterCount`] for a single filter, whose jerk has no bound.
+    /// [`FirError::SingleFilter`] for a single filter, whose jerk has no bound.
     pub fn with_chain(mut self, chain: &FilterChain) -> Result<Self, FirError> {
         self.chain = Some(CubicChain::of(chain)?);
         Ok(self)

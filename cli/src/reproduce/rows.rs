@@ -5,7 +5,6 @@ use super::experiments::{Entry, Experiment};
 use super::quantity::Quantity;
 use super::run::Runs;
 use crate::error::CliError;
-use crate::filters::refused;
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_fir::largest_circle_feed;
@@ -71,7 +70,7 @@ fn value(quantity: &Quantity, runs: &mut Runs) -> Result<f64, CliError> {
         Quantity::Crossover(tolerance) => crossover(tolerance, runs)?,
         Quantity::CircleFeed(course, radius, tolerance) => {
             let chain = course.chain()?.ok_or_else(|| none(course.name))?;
-            largest_circle_feed(&chain, radius, tolerance).map_err(refused)?
+            largest_circle_feed(&chain, radius, tolerance).map_err(CliError::Filters)?
         }
         Quantity::Gain(course, frequency) => {
             let chain = course.chain()?.ok_or_else(|| none(course.name))?;

@@ -2,7 +2,6 @@
 
 use super::experiments::Course;
 use crate::error::CliError;
-use crate::filters::refused;
 use crate::pipeline::{Lane, Moves};
 use crate::planner::{Tuning, planner};
 use crate::summary::worst_first;
@@ -37,7 +36,7 @@ impl Course {
         }
         FilterChain::with_time_constants(self.filters)
             .map(Some)
-            .map_err(refused)
+            .map_err(CliError::Filters)
     }
 }
 
