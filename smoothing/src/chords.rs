@@ -34,6 +34,11 @@ impl<const N: usize> Chords<N> {
         }
     }
 
+    /// How many chords there are.
+    pub(crate) fn count(&self) -> f64 {
+        self.count
+    }
+
     /// How far the arc lies from its chords at the most.
     pub(crate) fn bulge(&self) -> f64 {
         self.bulge

@@ -20,6 +20,9 @@ pub(crate) struct Leg<const N: usize> {
     /// How far those moves may lie from the leg.
     pub(crate) deviation: f64,
     pub(crate) serves: Serves,
+    /// Numbers of the first vertex that was merged into it and of the next one that was not, counted
+    /// by the merger from its beginning.
+    pub(crate) vertices: [u64; 2],
     /// Whether the motion rests at its end.
     pub(crate) stop: bool,
     /// A pause at its end.
@@ -30,6 +33,11 @@ impl<const N: usize> Leg<N> {
     /// What merging has left of the tolerance.
     pub(crate) fn room(&self) -> Tolerance {
         self.tolerance.less(self.deviation)
+    }
+
+    /// Whether the next leg begins with a move of the path.
+    pub(crate) fn ends_before(&self, next: &Self) -> bool {
+        self.serves.last < next.serves.first
     }
 }
 

@@ -16,6 +16,7 @@ mod method;
 mod overlap;
 mod pieces;
 mod planner;
+mod scale;
 mod select;
 mod stop_start;
 mod stretch;

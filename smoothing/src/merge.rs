@@ -3,7 +3,13 @@
 //! Source: ours; section 3.3 of the dissertation takes short moves as they come. A straight line may
 //! replace a run of moves when every corner it leaves out lies within a share of the tolerance of it;
 //! by continuity the whole run then lies near the line and the line near the run. What a merged move
-//! uses of the tolerance is measured, and the corners at its ends get the rest. Not here: motion.
+//! uses of the tolerance is measured, and the corners at its ends get the rest.
+//!
+//! From rest to rest a leg takes no longer than the moves that it serves, stopping at each. A move needs
+//! `1/V + V/A + A/J` for some `V` and `A` at most what each axis, and the feedrate, leave of it; written
+//! with the reciprocals of what they leave that is `v + a/v + j/a`, its three terms are no larger for two
+//! moves together than for both added, and the reciprocals are norms of the move, so they are no
+//! larger for the straight line than for both moves added. Not here: motion.
 
 use crate::leg::{Dwell, Leg};
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
@@ -47,6 +53,9 @@ pub(crate) struct Merger<const N: usize> {
     /// Largest feedrate of the run.
     fastest: f64,
     carried: Option<Carried<N>>,
+    /// Number of the first vertex that no leg has served, and of the next to come.
+    first: u64,
+    taken: u64,
 }
 
 /// Moves that led nowhere and wait for a leg to serve them.
@@ -72,7 +81,22 @@ impl<const N: usize> Merger<N> {
             deviation: 0.0,
             fastest: 0.0,
             carried: None,
+            first: 0,
+            taken: 0,
         }
+    }
+
+    /// Becomes a copy of another.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.limits = other.limits;
+        self.share = other.share;
+        self.anchor = other.anchor;
+        self.run.clone_from(&other.run);
+        self.deviation = other.deviation;
+        self.fastest = other.fastest;
+        self.carried = other.carried;
+        self.first = other.first;
+        self.taken = other.taken;
     }
 
     /// Begins again at rest at `start`.
@@ -88,6 +112,7 @@ impl<const N: usize> Merger<N> {
     pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Leg<N>> {
         if self.run.is_empty() && (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
             self.carry(&vertex, vertex.serves, vertex.bulge);
+            self.taken += 1;
             return None;
         }
         let mut leg = None;
@@ -97,6 +122,7 @@ impl<const N: usize> Merger<N> {
                 leg = self.flush();
                 if (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
                     self.carry(&vertex, vertex.serves, vertex.bulge);
+                    self.taken += 1;
                     return leg;
                 }
                 self.deviation = vertex.bulge;
@@ -104,6 +130,7 @@ impl<const N: usize> Merger<N> {
         }
         self.fastest = self.fastest.max(vertex.feedrate);
         self.run.push(vertex);
+        self.taken += 1;
         leg
     }
 
@@ -147,21 +174,41 @@ impl<const N: usize> Merger<N> {
             tolerance,
             deviation,
             serves,
+            vertices: [self.first, self.taken],
             stop: false,
             dwell: None,
         };
         self.anchor = last.point;
+        self.first = self.taken;
         Some(leg)
     }
 
     /// Moves that led nowhere and that no leg has served.
     pub(crate) fn take_carried(&mut self) -> Option<Dwell<N>> {
         let carried = self.carried.take()?;
+        self.first = self.taken;
         Some(Dwell {
             duration: 0.0,
             serves: carried.serves,
             end: carried.end,
         })
+    }
+
+    /// Whether moves that led nowhere wait for a leg and would narrow one of this tolerance.
+    pub(crate) fn narrows(&self, tolerance: Tolerance) -> bool {
+        self.carried.is_some_and(|carried| {
+            carried.deviation > 0.0 || carried.tolerance.length() < tolerance.length()
+        })
+    }
+
+    /// Whether there are vertices that no leg has served.
+    pub(crate) fn has_begun(&self) -> bool {
+        !self.run.is_empty() || self.carried.is_some()
+    }
+
+    /// Number of the first vertex that no leg has served.
+    pub(crate) fn first(&self) -> u64 {
+        self.first
     }
 
     /// Where the last leg ended.
@@ -185,27 +232,35 @@ impl<const N: usize> Merger<N> {
         self.carried = Some(carried);
     }
 
-    /// Length of the moves that would be slowed to the feedrate of another if `vertex` were merged.
-    fn hurried_with(&self, vertex: &Vertex<N>, before: &Vertex<N>) -> f64 {
+    /// Whether moves would lose time if `vertex` were merged, because another of the run has a lower
+    /// feedrate: all but those so short that they would not get up to it between two stops.
+    fn hurries(&self, vertex: &Vertex<N>, before: &Vertex<N>, tolerance: Tolerance) -> bool {
         let feedrate = self
             .run
             .iter()
             .fold(vertex.feedrate, |least, member| least.min(member.feedrate));
         if feedrate >= vertex.feedrate && feedrate >= self.fastest {
-            return 0.0;
+            return false;
         }
         let mut hurried = 0.0;
+        let mut add = |member: &Vertex<N>, from: &Vector<N>| {
+            let span = member.point - from;
+            let length = span.norm();
+            if member.feedrate <= feedrate || length <= 0.0 {
+                return true;
+            }
+            hurried += length;
+            let reached = self.limits.along(&(span / length)).reachable_within(length);
+            hurried <= NEGLIGIBLE * tolerance.length() && reached <= feedrate
+        };
         let mut from = self.anchor;
         for member in &self.run {
-            if member.feedrate > feedrate {
-                hurried += (member.point - from).norm();
+            if !add(member, &from) {
+                return true;
             }
             from = member.point;
         }
-        if vertex.feedrate > feedrate {
-            hurried += (vertex.point - before.point).norm();
-        }
-        hurried
+        !add(vertex, &before.point)
     }
 
     /// Largest distance of the run from a line to `vertex`, or `None` when it cannot be merged.
@@ -220,8 +275,7 @@ impl<const N: usize> Merger<N> {
             least.min(member.tolerance)
         });
         let budget = self.share * tolerance.length();
-        let hurried = self.hurried_with(vertex, before);
-        if hurried > NEGLIGIBLE * tolerance.length() {
+        if self.hurries(vertex, before, tolerance) {
             return None;
         }
         let bulge = self

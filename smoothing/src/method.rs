@@ -8,7 +8,8 @@ use toolglide_kinematics::Limits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The fastest motion at every corner, stopping included.
+    /// The fastest motion at every corner, stopping included: never slower than [`Method::ExactStop`].
+    /// No other method promises that, because each forces one kind of corner.
     Kcs,
     /// Uninterrupted acceleration at every corner.
     KcsUninterrupted,

@@ -11,18 +11,6 @@ use toolglide_profiles::{Connection, Feed, ProfileError};
 /// Most pieces of a leg, its corner and a pause.
 pub(crate) const MOST_PIECES: usize = 16;
 
-/// Where on a leg the motion between two corner motions cruises: speed, and distances of the beginning
-/// and the end.
-pub(crate) fn cruise_on<const N: usize>(
-    leg: &Leg<N>,
-    from: &TurnShape,
-    to: &TurnShape,
-) -> Option<(f64, [f64; 2])> {
-    let feed = feed_on(leg, from, to).ok()?;
-    let [begin, end] = [3, 4].map(|phase| from.exit.distance + feed.starts()[phase].position);
-    Some((feed.starts()[3].velocity, [begin, end]))
-}
-
 fn feed_on<const N: usize>(
     leg: &Leg<N>,
     from: &TurnShape,
@@ -37,12 +25,11 @@ fn feed_on<const N: usize>(
     Feed::over(length.max(0.0), &connection)
 }
 
-/// Unrolls the leg between two corner motions, up to a distance at which it cruises.
+/// Unrolls the leg between two corner motions.
 pub(crate) fn unroll_leg<const N: usize>(
     leg: &Leg<N>,
     from: &TurnShape,
     to: &TurnShape,
-    until: f64,
     mut take: impl FnMut(Piece<N>),
 ) {
     let (reach, left) = (from.exit.distance, to.entry.distance);
@@ -80,13 +67,6 @@ pub(crate) fn unroll_leg<const N: usize>(
             jerk: leg.direction * state.jerk,
         };
         let reached = reach + state.after(phase.duration).position;
-        if reached > until {
-            let duration = (until - reach - state.position) / state.velocity;
-            if duration > 0.0 {
-                take(Piece::new(&start, duration, at(until), leg.serves));
-            }
-            return;
-        }
         let piece_end = if index == last { end } else { at(reached) };
         take(Piece::new(&start, phase.duration, piece_end, leg.serves));
     }

@@ -8,9 +8,10 @@ use crate::corners::Corners;
 use crate::leg::Dwell;
 use crate::merge::Vertex;
 use crate::method::{Method, Settings};
-use crate::stretch::Stretches;
+use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
-    MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector, check_contact,
+    MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Tolerance, Toolpath, Vector,
+    check_contact,
 };
 
 /// Plans kinematic corner smoothing while the path is being read.
@@ -74,9 +75,12 @@ impl<const N: usize> KinematicSmoothing<N> {
         match chords.next() {
             Some(point) => self.take_point(&step, index, point, bulge),
             None => {
+                let alone = self.route.takes_alone(chords);
                 self.arc = None;
-                if self.stops || step.stops() {
+                if alone || self.stops || step.stops() {
                     self.route.rest();
+                } else {
+                    self.route.part(step.tolerance());
                 }
                 if self.finished {
                     self.route.close();
@@ -112,6 +116,22 @@ impl<const N: usize> Route<N> {
         match self {
             Self::Corners(corners) => corners.rest(),
             Self::Stretches(stretches) => stretches.rest(),
+        }
+    }
+
+    /// Whether an arc is so long that it is taken from rest to rest.
+    fn takes_alone(&self, chords: &Chords<N>) -> bool {
+        match self {
+            Self::Corners(_) => false,
+            Self::Stretches(_) => chords.count() > LONGEST_ARC as f64,
+        }
+    }
+
+    /// An arc begins or has ended.
+    fn part(&mut self, tolerance: Tolerance) {
+        match self {
+            Self::Corners(_) => {}
+            Self::Stretches(stretches) => stretches.part(tolerance),
         }
     }
 
@@ -165,6 +185,11 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
             Path::Arc(arc) => {
                 let share = self.route.chord_share();
                 let chords = Chords::new(*arc, share * next.tolerance().length());
+                if self.route.takes_alone(&chords) {
+                    self.route.rest();
+                } else {
+                    self.route.part(next.tolerance());
+                }
                 self.arc = Some((chords, *next, index));
             }
             Path::Dwell { duration } => {

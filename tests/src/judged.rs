@@ -2,8 +2,8 @@
 //!
 //! Not here: the courses.
 
-use crate::bounds::{NEVER_SLOWER, NEVER_SLOWER_WITH_ARCS};
-use crate::course::{Course, Lead, Numbers, limits};
+use crate::bounds::NEVER_SLOWER;
+use crate::course::{Course, Numbers, limits};
 use proptest::prelude::*;
 use toolglide_kinematics::{Plan, Trajectory, verify};
 use toolglide_smoothing::{Method, Settings, plan};
@@ -24,15 +24,6 @@ pub fn judge<const N: usize>(
 ) -> Result<u32, TestCaseError> {
     let path = course.toolpath();
     let limits = limits(numbers);
-    let has_arc = course
-        .legs
-        .iter()
-        .any(|leg| matches!(leg.lead, Lead::Arc { .. }));
-    let slack = if has_arc {
-        NEVER_SLOWER_WITH_ARCS
-    } else {
-        NEVER_SLOWER
-    };
     let mut plans = 0;
     for window in WINDOWS {
         let settings = Settings::new(limits).with_window(window);
@@ -53,7 +44,7 @@ pub fn judge<const N: usize>(
             plans += 1;
             let duration = with(method)?.duration();
             prop_assert!(
-                method != Method::Kcs || duration <= stopping * (1.0 + slack),
+                method != Method::Kcs || duration <= stopping * (1.0 + NEVER_SLOWER),
                 "in a window of {window} kcs takes {duration} s, stopping {stopping} s"
             );
         }

@@ -166,7 +166,7 @@ impl<const N: usize> Course<N> {
             bend.turn(speed, [&leg.limits, &next.limits])
         });
         let pieces = &mut self.pieces;
-        unroll_leg(&leg, &self.from, &to, f64::INFINITY, |piece| {
+        unroll_leg(&leg, &self.from, &to, |piece| {
             pieces.push_back(piece);
         });
         if let Some(pause) = leg.dwell {

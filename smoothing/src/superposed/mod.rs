@@ -8,6 +8,7 @@
 //! limits and the tolerance; otherwise its corners are turned one by one. Not here: which stretches
 //! are worth it.
 
+mod attempt;
 mod curve;
 mod pace;
 mod spline;
@@ -19,20 +20,8 @@ use pace::{Filter, Handover, Pace};
 use spline::Spline;
 use toolglide_kinematics::{Limits, Piece, Vector};
 
-/// Most legs of one stretch.
-pub(crate) const MOST_LEGS: usize = 4096;
-
 /// Most time steps of one stretch.
 const MOST_STEPS: usize = 16_384;
-
-/// Fewest time steps of one stretch.
-const FEWEST_STEPS: f64 = 4.0;
-
-/// Share of the feedrate by which a change of speed overshoots it, for a time step as long as the ramp.
-const OVERSHOOT: f64 = 0.015;
-
-/// Rounds of slowing down where a limit or the tolerance is exceeded.
-const ROUNDS: usize = 8;
 
 /// Filters tried in this order: the time step, as a share of the time in which the jerk changes the
 /// speed by the feedrate, and the sharpening.
@@ -73,10 +62,11 @@ pub(crate) struct Superposer<const N: usize> {
 }
 
 impl<const N: usize> Superposer<N> {
-    pub(crate) fn new(limits: Limits<N>) -> Self {
+    /// A planner of stretches of so many legs at the most.
+    pub(crate) fn new(limits: Limits<N>, legs: usize) -> Self {
         Self {
             limits,
-            curve: Curve::with_capacity(MOST_LEGS + 1),
+            curve: Curve::with_capacity(legs + 1),
             pace: Pace::new(),
             spline: Spline::with_capacity(MOST_STEPS + 8),
             best: Spline::with_capacity(MOST_STEPS + 8),
@@ -211,12 +201,6 @@ impl<const N: usize> Superposer<N> {
         self.onward = None;
     }
 
-    /// Forgets the motion that was travelled; all its pieces have been pulled.
-    pub(crate) fn discard(&mut self) {
-        self.onward = None;
-        self.next = self.until;
-    }
-
     /// Duration of what was planned last.
     pub(crate) fn planned(&self) -> f64 {
         self.best.duration()
@@ -240,109 +224,5 @@ impl<const N: usize> Superposer<N> {
     /// Whether all pieces that will not become others have been pulled.
     pub(crate) fn is_done(&self) -> bool {
         self.next >= self.until
-    }
-
-    fn attempt(
-        &mut self,
-        filter: &Filter,
-        ramp: f64,
-        most: f64,
-        onward: Option<&Onward<N>>,
-    ) -> bool {
-        // A change of speed overshoots by about this much when the control points are sharpened.
-        let share = 1.0 - OVERSHOOT * (filter.step / ramp).powi(2);
-        let start = onward.map_or(Handover::AT_REST, |onward| onward.start);
-        if !self
-            .pace
-            .survey(&self.curve, &self.limits, filter, &start, share)
-        {
-            return false;
-        }
-        for _ in 0..ROUNDS {
-            if !self.propose(filter, most, onward) {
-                return false;
-            }
-            let mut kept = true;
-            for index in 0..self.spline.pieces() {
-                if let Some(excess) = self.spline.excess(index, &self.curve, &self.limits) {
-                    kept = false;
-                    let controls = &self.spline.controls[index..index + 4];
-                    self.pace
-                        .slow(controls[0].distance, controls[3].distance, &excess);
-                }
-            }
-            if kept {
-                self.spline.handover = self.pace.handover();
-                return true;
-            }
-            self.pace.settle();
-        }
-        false
-    }
-
-    /// Control points of a motion through the stretch; `false` when it takes too long.
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        clippy::cast_sign_loss,
-        reason = "the count is bounded before it is cast"
-    )]
-    fn propose(&mut self, filter: &Filter, most: f64, onward: Option<&Onward<N>>) -> bool {
-        let Self {
-            curve,
-            pace,
-            spline,
-            ..
-        } = self;
-        let Some(duration) = pace.arrange(filter.step) else {
-            return false;
-        };
-        if duration >= most || duration > filter.step * MOST_STEPS as f64 {
-            return false;
-        }
-        spline.clear(filter);
-        let mut first = 0.0;
-        let begin = curve.control_at(0.0, 0);
-        if let Some(onward) = onward {
-            spline.origin = onward.first - 4.0 * filter.step;
-            first = onward.first;
-            let [last, next] = onward.progress;
-            for (control, distance) in onward.controls.iter().zip([last, last, last]) {
-                spline.push(*control, distance);
-            }
-            spline.push(curve.control_at(next, onward.controls[2].leg), next);
-        } else {
-            // Whole steps from rest to rest.
-            let steps = (duration / filter.step).round().max(FEWEST_STEPS);
-            spline.step = duration / steps;
-            spline.origin = -spline.step;
-            spline.push(begin, 0.0);
-        }
-        let settled = spline.controls.len() - 1;
-        let mut near = 0;
-        pace.walk(first, spline.step, |distance, _, _| {
-            let control = curve.control_at(distance, near);
-            near = control.leg;
-            spline.push(control, distance);
-            spline.controls.len() <= MOST_STEPS
-        });
-        let end = curve.end();
-        let length = curve.length();
-        if onward.is_none() {
-            // Rounding decides whether the last instant is among them.
-            let steps = (duration / spline.step).round() as usize;
-            spline.controls.truncate(steps + 1);
-            spline.progress.truncate(steps + 1);
-        }
-        spline.push(end, length);
-        spline.push(end, length);
-        spline.sharpen(settled.max(1), curve, filter.sharpening);
-        // Three equal control points are a rest.
-        let count = spline.controls.len();
-        if onward.is_none() {
-            spline.controls[..3].fill(begin);
-        }
-        spline.controls[count - 3..].fill(end);
-        spline.duration() < most
     }
 }

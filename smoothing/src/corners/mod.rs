@@ -4,17 +4,19 @@
 //! corner, the lattice chooses among them, and the chosen ones are unrolled into pieces when they are
 //! asked for. Not here: any formula.
 
-use crate::lattice::{Choice, Lattice, MOST_CANDIDATES};
+mod offer;
+mod unroll;
+
+use crate::lattice::{Choice, Lattice};
 use crate::leg::{Dwell, Leg};
 use crate::merge::{MERGE_SHARE, Merger, ROUNDING_SHARE, Vertex};
 use crate::method::{Method, Settings};
-use crate::overlap::Between;
-use crate::pieces::{MOST_PIECES, corner_between, cruise_on, unroll_corner, unroll_leg};
+use crate::pieces::{MOST_PIECES, corner_between};
 use crate::select::Selection;
-use crate::turn::{Part, TurnShape};
+use crate::turn::TurnShape;
 use crate::window::{Link, Window};
+use offer::overlapping_of;
 use std::collections::VecDeque;
-use toolglide_kinematics::numeric::CLOSURE;
 use toolglide_kinematics::{Limits, Piece, Tolerance, Vector};
 
 /// Plans the corners of a stream of vertices, from rest to rest.
@@ -40,8 +42,6 @@ pub(crate) struct Corners<const N: usize> {
     last_offered: Option<Leg<N>>,
     /// How the next leg to be unrolled begins.
     from: Choice,
-    /// Distance on the last leg at which another motion takes over.
-    until: f64,
     pieces: VecDeque<Piece<N>>,
 }
 
@@ -72,7 +72,6 @@ impl<const N: usize> Corners<N> {
             last: None,
             last_offered: None,
             from: AT_REST,
-            until: f64::INFINITY,
             pieces: VecDeque::with_capacity(MOST_PIECES + 1),
         }
     }
@@ -104,7 +103,6 @@ impl<const N: usize> Corners<N> {
             shape,
             overlap: None,
         };
-        self.until = f64::INFINITY;
         self.pieces.clear();
     }
 
@@ -117,9 +115,7 @@ impl<const N: usize> Corners<N> {
 
     /// The motion must rest where the path has come to.
     pub(crate) fn rest(&mut self) {
-        if let Some(leg) = self.merger.flush() {
-            self.take_leg(leg);
-        }
+        self.part();
         if let Some(last) = &mut self.pending {
             last.stop = true;
         }
@@ -158,36 +154,82 @@ impl<const N: usize> Corners<N> {
         }
         self.offer();
         if let Some(last) = self.pending.take() {
-            let link = link_of(&last);
-            self.legs.push_back(last);
-            self.lattice
-                .push(&link, &[TurnShape::STOP], &[], |_, _| None);
-            self.offered += 1;
-            self.lattice.finish();
+            self.end(last, TurnShape::STOP);
         }
     }
 
-    /// Whether the motion need not rest at the end of the last leg so far.
-    pub(crate) fn is_under_way(&self) -> bool {
-        self.pending.as_ref().is_some_and(|last| !last.stop)
+    /// Begins a new leg where the path has come to.
+    pub(crate) fn part(&mut self) {
+        if let Some(leg) = self.merger.flush() {
+            self.take_leg(leg);
+        }
     }
 
-    /// After it has been closed: ends the motion where it cruises over a distance from the start of the
-    /// last leg, instead of bringing it to rest at its end, if it does so at this speed.
-    pub(crate) fn end_cruising(&mut self, start: &Vector<N>, distance: f64, speed: f64) -> bool {
-        let Some(leg) = self.legs.back().filter(|leg| leg.start == *start) else {
-            return false;
-        };
-        let from = self.lattice.before_last().unwrap_or(self.from);
-        let cruises = cruise_on(leg, &from.shape, &TurnShape::STOP).is_some_and(
-            |(cruising, [begin, end])| {
-                begin <= distance && distance <= end && (cruising - speed).abs() <= CLOSURE * speed
-            },
-        );
-        if cruises {
-            self.until = distance;
+    /// Ends the motion on the last leg, cruising at a distance from its start, instead of at rest at its
+    /// end; from rest at its start there must be room to reach the speed.
+    pub(crate) fn close_cruising(&mut self, distance: f64, speed: f64) {
+        self.part();
+        for window in &mut self.windows {
+            window.finish();
         }
-        cruises
+        self.offer();
+        if let Some(last) = self.pending.take() {
+            self.end(
+                Leg {
+                    length: distance,
+                    end: last.start + last.direction * distance,
+                    ..last
+                },
+                TurnShape::through(speed),
+            );
+        }
+    }
+
+    /// Ends the motion at the end of a leg.
+    fn end(&mut self, leg: Leg<N>, shape: TurnShape) {
+        let link = link_of(&leg);
+        self.legs.push_back(leg);
+        self.lattice.push(&link, &[shape], &[], |_, _| None);
+        self.offered += 1;
+        self.lattice.finish();
+    }
+
+    /// Whether there is motion that has not been closed.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.pending.is_some() || self.merger.has_begun()
+    }
+
+    /// Becomes a copy of another, without the motion that waits to be pulled.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.merger.follow(&other.merger);
+        self.pending = other.pending;
+        for (window, others) in self.windows.iter_mut().zip(&other.windows) {
+            window.follow(others);
+        }
+        for (scaled, others) in self.scaled.iter_mut().zip(&other.scaled) {
+            scaled.clone_from(others);
+        }
+        self.lattice.follow(&other.lattice);
+        self.legs.clear();
+        self.legs.extend(other.legs.iter().skip(other.offered));
+        self.offered = 0;
+        self.last_offered = other.last_offered;
+        self.pieces.clear();
+    }
+
+    /// Time from the beginning to rest after more vertices, of which no motion is made.
+    pub(crate) fn time_to_rest<'a>(
+        &mut self,
+        vertices: impl IntoIterator<Item = &'a Vertex<N>>,
+    ) -> f64 {
+        for vertex in vertices {
+            self.push(*vertex);
+            self.lattice.forget();
+            self.legs.drain(..self.offered);
+            self.offered = 0;
+        }
+        self.close();
+        self.lattice.duration()
     }
 
     /// The next piece of finished motion.
@@ -225,123 +267,7 @@ impl<const N: usize> Corners<N> {
             }
         }
     }
-
-    /// Hands corners to the lattice that all windows have scaled.
-    fn offer(&mut self) {
-        for (window, scaled) in self.windows.iter_mut().zip(&mut self.scaled) {
-            while let Some(shape) = window.pull() {
-                scaled.push_back(shape);
-            }
-        }
-        while self.offered < self.legs.len() && self.scaled.iter().all(|queue| !queue.is_empty()) {
-            let mut candidates = [TurnShape::STOP; MOST_CANDIDATES];
-            let mut count = 0;
-            let leg = &self.legs[self.offered];
-            for queue in &mut self.scaled {
-                if let Some(shape) = queue.pop_front() {
-                    candidates[count] = shape;
-                    count += 1;
-                }
-            }
-            let next = self.legs.get(self.offered + 1).or(self.pending.as_ref());
-            if leg.stop {
-                count = 0;
-            }
-            if self.stops_allowed || leg.stop {
-                candidates[count] = TurnShape::STOP;
-                count += 1;
-            }
-            let safe = count;
-            if let (Some(selection), Some(next)) = (self.selections.first(), next)
-                && !(leg.stop || self.overlapping.is_empty())
-            {
-                let corner = corner_between(leg, next, corner_tolerance(leg, next));
-                let reach = 4.0 * corner.tolerance.length() / corner.half_turn_sine();
-                if reach > OVERLAPPING_REACH * leg.length.min(next.length)
-                    && let Some(shape) = selection.unscaled(&corner)
-                {
-                    let reach = shape.entry.distance.max(shape.exit.distance);
-                    let filling = (leg.length.min(next.length) / reach).cbrt();
-                    for share in self.overlapping {
-                        candidates[count] = shape.scaled((share * filling).min(1.0));
-                        count += 1;
-                    }
-                }
-            }
-            let link = link_of(leg);
-            let last = self.last_offered.as_ref();
-            self.lattice.push(
-                &link,
-                &candidates[..safe],
-                &candidates[safe..count],
-                |from, to| {
-                    let between = Between {
-                        before: last?,
-                        leg,
-                        after: next?,
-                    };
-                    between.duration(from, to, &self.limits)
-                },
-            );
-            self.last_offered = Some(*leg);
-            self.offered += 1;
-        }
-    }
-
-    /// Unrolls what is left of the corner before the next leg, and the leg.
-    fn unroll(&mut self, to: &Choice) {
-        let Some(leg) = self.legs.pop_front() else {
-            return;
-        };
-        self.offered -= 1;
-        let pieces = &mut self.pieces;
-        let from = self.from;
-        let part = match (from.overlap, to.overlap) {
-            (None, None) => Some(Part::Whole),
-            (None, Some(_)) => Some(Part::FirstHalf),
-            (Some(_), None) => Some(Part::SecondHalf),
-            (Some(_), Some(_)) => None,
-        };
-        if let (Some(last), Some(part)) = (&self.last, part) {
-            let corner = corner_between(last, &leg, corner_tolerance(last, &leg));
-            unroll_corner(&from.shape, part, corner, last, &leg, |piece| {
-                pieces.push_back(piece);
-            });
-        }
-        let next = self.legs.front().or(self.pending.as_ref());
-        match (to.overlap, &self.last, next) {
-            (Some(duration), Some(before), Some(after)) => {
-                let between = Between {
-                    before,
-                    leg: &leg,
-                    after,
-                };
-                between.pieces(&from.shape, &to.shape, duration, |piece| {
-                    pieces.push_back(piece);
-                });
-            }
-            _ => {
-                let until = if next.is_none() {
-                    self.until
-                } else {
-                    f64::INFINITY
-                };
-                unroll_leg(&leg, &from.shape, &to.shape, until, |piece| {
-                    pieces.push_back(piece);
-                });
-            }
-        }
-        if let Some(pause) = leg.dwell {
-            pieces.push_back(pause.piece(leg.end));
-        }
-        self.last = Some(leg);
-        self.from = *to;
-    }
 }
-
-/// Share of the shorter move beside a corner that the full corner must reach over, lest it is not
-/// tried overlapping.
-const OVERLAPPING_REACH: f64 = 0.0;
 
 /// Shortest window: two corners, so that one can be seen from the other.
 const SHORTEST_WINDOW: usize = 2;
@@ -354,16 +280,6 @@ const AT_REST: Choice = Choice {
     shape: TurnShape::STOP,
     overlap: None,
 };
-
-/// Scales of the uninterrupted corner that are tried overlapping, as shares of the scale at which it
-/// reaches over the whole of the shorter move beside it.
-fn overlapping_of(method: Method) -> &'static [f64] {
-    match method {
-        Method::Kcs => &[1.3],
-        Method::KcsGlobal => &[1.2, 1.1, 1.0, 0.9, 0.8, 0.7, 0.6],
-        _ => &[],
-    }
-}
 
 /// Share of the tolerance that merging may use.
 fn share_of(method: Method) -> f64 {

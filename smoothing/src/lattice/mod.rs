@@ -4,39 +4,19 @@
 //! corner offers a full stop and the motions that the windows have scaled; every motion of a window
 //! is followed by one of the same window that fits, and a stop is followed by a stop, so no choice
 //! leads into a dead end. The plan that stops at every corner is one of the ways, so the cheapest is
-//! never slower. A way that lies behind another by more than the time to stop is given up: the other
-//! could have stopped by then, and would still be ahead. Not here: where the candidates come from.
+//! never slower. A way that lies far behind another is given up, except the one that stops now: on it
+//! rests the promise. Not here: where the candidates come from.
+
+mod column;
 
 use crate::turn::TurnShape;
 use crate::window::Link;
+use column::Column;
+pub(crate) use column::MOST_CANDIDATES;
 use std::collections::VecDeque;
-use toolglide_profiles::Connection;
-
-/// Most candidates of one corner.
-pub(crate) const MOST_CANDIDATES: usize = 8;
-
-/// Share of a move that two corners must leave free, lest they are tried overlapping.
-const OVERLAPPING: f64 = 2.0;
-
-/// Times to stop by which a way that does not stop may lie behind the cheapest.
-const STOPS_BEHIND: f64 = 4.0;
 
 /// Corners between two attempts to commit.
 const PATIENCE: usize = 16;
-
-/// A corner, its candidates, and the cheapest way to each.
-#[derive(Clone, Copy, Debug)]
-struct Column {
-    shapes: [TurnShape; MOST_CANDIDATES],
-    /// Time to the middle of the corner.
-    costs: [f64; MOST_CANDIDATES],
-    origins: [u8; MOST_CANDIDATES],
-    /// Duration of the overlap in which the corner is reached; zero when it is reached on the move.
-    overlaps: [f64; MOST_CANDIDATES],
-    count: usize,
-    /// How many of the candidates, the first ones, can always be followed by another.
-    safe: usize,
-}
 
 /// The motion chosen for a corner.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +37,8 @@ pub(crate) struct Lattice {
     finished: bool,
     /// The last move.
     last: Option<Link>,
+    /// Time from the beginning from which the costs are counted.
+    spent: f64,
 }
 
 impl Lattice {
@@ -72,6 +54,7 @@ impl Lattice {
             wait: 0,
             finished: false,
             last: None,
+            spent: 0.0,
         };
         lattice.restart_after(TurnShape::STOP);
         lattice
@@ -89,6 +72,28 @@ impl Lattice {
         self.wait = PATIENCE.min(self.size);
         self.finished = false;
         self.last = None;
+        self.spent = 0.0;
+    }
+
+    /// Becomes a copy of another, without the choices that wait to be pulled.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.columns.clone_from(&other.columns);
+        self.chosen.clear();
+        self.size = other.size;
+        self.wait = other.wait;
+        self.finished = other.finished;
+        self.last = other.last;
+        self.spent = other.spent;
+    }
+
+    /// After it has been finished: the time from the beginning to the end.
+    pub(crate) fn duration(&self) -> f64 {
+        self.spent
+    }
+
+    /// Drops the choices that wait to be pulled.
+    pub(crate) fn forget(&mut self) {
+        self.chosen.clear();
     }
 
     /// Takes a move and the candidates of the corner at its end, first those that can always be followed
@@ -125,11 +130,6 @@ impl Lattice {
     pub(crate) fn finish(&mut self) {
         self.finished = true;
         self.commit();
-    }
-
-    /// The motion chosen for the corner before the last that has been chosen.
-    pub(crate) fn before_last(&self) -> Option<Choice> {
-        self.chosen.iter().rev().nth(1).copied()
     }
 
     /// The motion chosen for the next corner.
@@ -226,114 +226,8 @@ impl Lattice {
                 for cost in &mut last.costs[..last.count] {
                     *cost -= base;
                 }
+                self.spent += base;
             }
-        }
-    }
-}
-
-impl Column {
-    fn empty() -> Self {
-        Self {
-            shapes: [TurnShape::STOP; MOST_CANDIDATES],
-            costs: [f64::INFINITY; MOST_CANDIDATES],
-            origins: [0; MOST_CANDIDATES],
-            overlaps: [0.0; MOST_CANDIDATES],
-            count: 0,
-            safe: 0,
-        }
-    }
-
-    /// Adds a candidate unless it is there already.
-    fn offer(&mut self, shape: TurnShape) {
-        let known = self.shapes[..self.count].contains(&shape);
-        if !known && self.count < MOST_CANDIDATES {
-            self.shapes[self.count] = shape;
-            self.count += 1;
-        }
-    }
-
-    /// The stop, unless it was given up or is not offered; the cheapest safe one otherwise.
-    fn stop(&self) -> usize {
-        (0..self.safe)
-            .find(|&candidate| {
-                self.shapes[candidate].is_stop() && self.costs[candidate].is_finite()
-            })
-            .unwrap_or_else(|| self.cheapest())
-    }
-
-    /// Gives up what lies too far behind the cheapest safe one, given the time in which that could stop
-    /// on a move like the last: it could have stopped, or stopped and started again.
-    fn give_up(&mut self, link: &Link) {
-        let cheapest = self.cheapest();
-        let least = self.costs[cheapest];
-        let speed = self.shapes[cheapest].exit.speed;
-        let time_to_stop = link.limits.time_to_change(speed);
-        for candidate in 0..self.count {
-            let times = if self.shapes[candidate].is_stop() {
-                1.0
-            } else {
-                STOPS_BEHIND
-            };
-            if self.costs[candidate] > least + times * time_to_stop {
-                self.costs[candidate] = f64::INFINITY;
-            }
-        }
-    }
-
-    /// The cheapest of those that can always be followed by another.
-    fn cheapest(&self) -> usize {
-        let mut best = 0;
-        for candidate in 1..self.safe {
-            if self.costs[candidate] < self.costs[best] {
-                best = candidate;
-            }
-        }
-        best
-    }
-
-    /// Finds the cheapest way to each candidate over `link`.
-    fn reach_from(
-        &mut self,
-        last: &Self,
-        link: &Link,
-        overlap: impl Fn(&TurnShape, &TurnShape) -> Option<f64>,
-    ) {
-        for candidate in 0..self.count {
-            let to = self.shapes[candidate];
-            let mut best = f64::INFINITY;
-            for origin in 0..last.count {
-                let from = &last.shapes[origin];
-                let length = link.length - from.exit.distance - to.entry.distance;
-                let before = last.costs[origin];
-                let halves = 0.5 * (from.duration + to.duration);
-                // No way is shorter than the whole length at the feedrate.
-                if length >= 0.0 && before + halves + length / link.limits.velocity < best {
-                    let connection = Connection {
-                        from: [from.exit.speed, from.exit.acceleration],
-                        to: [to.entry.speed, to.entry.acceleration],
-                        limits: link.limits,
-                    };
-                    if let Some(duration) = connection.duration_over(length) {
-                        let cost = before + halves + duration;
-                        if cost < best {
-                            best = cost;
-                            self.origins[candidate] = u8::try_from(origin).unwrap_or(0);
-                            self.overlaps[candidate] = 0.0;
-                        }
-                    }
-                }
-                let short = length < OVERLAPPING * link.length;
-                if short
-                    && before < best
-                    && let Some(duration) = overlap(from, &to)
-                    && before + duration < best
-                {
-                    best = before + duration;
-                    self.origins[candidate] = u8::try_from(origin).unwrap_or(0);
-                    self.overlaps[candidate] = duration;
-                }
-            }
-            self.costs[candidate] = best;
         }
     }
 }

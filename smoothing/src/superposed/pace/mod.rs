@@ -5,6 +5,8 @@
 //! fast, it is held at constant speed. What comes out is a proposal, judged elsewhere. Not here: what a
 //! place allows.
 
+mod progress;
+
 use super::curve::Curve;
 use super::spline::Excess;
 use super::survey::survey;
@@ -12,7 +14,7 @@ use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, Tangential};
-use toolglide_profiles::{Connection, Feed, Profile, State};
+use toolglide_profiles::Profile;
 
 /// How much faster than a place allows the progress may be before it is held back there.
 const EXCESS: f64 = 1.01;
@@ -20,8 +22,6 @@ const EXCESS: f64 = 1.01;
 const ALIKE: f64 = 0.9;
 /// Places whose speeds lie within this ratio are travelled at the slowest of them.
 const SAME: f64 = 0.99;
-/// Share of the speed that a place allows from which the progress passes it at full speed.
-const FULL: f64 = 0.97;
 /// Places, half a time step each, over which the progress may go down to a slightly lower feedrate.
 const BRAKING: usize = 4;
 /// Rounds of holding the progress back.
@@ -30,8 +30,6 @@ const ROUNDS: usize = 6;
 const SLOWER: f64 = 0.995;
 /// The most that a place is slowed by in one round.
 const SLOWEST: f64 = 0.85;
-/// Most instants at which one stretch is looked at.
-const MOST_TICKS: f64 = 20_000.0;
 /// Most places on one stretch.
 pub(super) const MOST_PLACES: usize = 16_384;
 
@@ -202,103 +200,6 @@ impl Pace {
             from = to;
         }
         Some(duration)
-    }
-
-    /// The last place at which the progress neither gains nor loses speed and goes as fast as the place
-    /// allows; the fastest where there is none.
-    pub(super) fn handover(&self) -> Option<Handover> {
-        let mut best: Option<Handover> = None;
-        let mut full = false;
-        let mut begin = Handover {
-            time: 0.0,
-            ..self.start
-        };
-        let mut place = 0;
-        for (index, link) in self.links.iter().enumerate() {
-            let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
-            let feed = Self::feed(link, begin.speed, to)?;
-            let cruised = &feed.starts()[4];
-            let ends = [
-                Handover {
-                    time: begin.time
-                        + feed.phases()[..4]
-                            .iter()
-                            .map(|phase| phase.duration)
-                            .sum::<f64>(),
-                    distance: begin.distance + cruised.position,
-                    speed: cruised.velocity,
-                },
-                Handover {
-                    time: begin.time + feed.duration(),
-                    distance: begin.distance + link.length,
-                    speed: to,
-                },
-            ];
-            for end in ends {
-                while place + 1 < self.places.len() && self.places[place].end < end.distance {
-                    place += 1;
-                }
-                let is_full = end.speed >= FULL * self.places[place].limits.velocity;
-                let better = best.is_none_or(|best| end.speed > best.speed);
-                if end.speed > 0.0 && (is_full || (!full && better)) {
-                    best = Some(end);
-                    full |= is_full;
-                }
-            }
-            begin = ends[1];
-        }
-        best
-    }
-
-    fn feed(link: &Link, from: f64, to: f64) -> Option<Feed> {
-        let connection = Connection {
-            from: [from, 0.0],
-            to: [to, 0.0],
-            limits: link.limits,
-        };
-        Feed::over(link.length, &connection).ok()
-    }
-
-    /// Gives distance, speed and link at each multiple of `step` after a first instant; `false` when
-    /// `take` has had enough.
-    pub(super) fn walk(
-        &self,
-        first: f64,
-        step: f64,
-        mut take: impl FnMut(f64, f64, usize) -> bool,
-    ) -> bool {
-        let Handover {
-            distance: mut begin,
-            speed: mut from,
-            ..
-        } = self.start;
-        let (mut time, mut tick) = (0.0, 0.0);
-        for (index, link) in self.links.iter().enumerate() {
-            let to = self.turns.get(index).map_or(0.0, |turn| turn.exit.speed);
-            let Some(feed) = Self::feed(link, from, to) else {
-                return false;
-            };
-            let mut state = State::moving(from, 0.0);
-            for phase in feed.phases() {
-                state.jerk = phase.jerk;
-                let end = time + phase.duration;
-                while first + tick * step < end {
-                    if tick > MOST_TICKS {
-                        return false;
-                    }
-                    let now = state.after(first + tick * step - time);
-                    if !take(begin + now.position, now.velocity, index) {
-                        return false;
-                    }
-                    tick += 1.0;
-                }
-                state = state.after(phase.duration);
-                time = end;
-            }
-            begin += link.length;
-            from = to;
-        }
-        true
     }
 
     /// Finds runs of places that the progress passes too fast, and holds it where the slowest places

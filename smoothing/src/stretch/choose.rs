@@ -1,0 +1,144 @@
+//! How a stretch is travelled fastest.
+//!
+//! Source: ours. From rest to rest there are corners, superposed corners, and, where there are arcs, each
+//! move by itself, which is what full stops would be; one of these is the measure of going on without a
+//! rest. Not here: the plans.
+
+use super::Stretches;
+use crate::leg::Leg;
+
+/// Fewest legs of a stretch worth trying with superposed corners.
+const FEWEST_LEGS: usize = 4;
+
+/// How much faster than the plan by corners a stretch at the feedrate would have to be.
+const WORTH_TRYING: f64 = 0.97;
+
+/// How a stretch is travelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// Corner by corner, without a rest before it.
+    Corners,
+    /// Corner by corner, after a rest.
+    Afresh,
+    /// With superposed corners.
+    Superposed,
+    /// Each move by itself, from rest to rest.
+    Apart,
+}
+
+/// What a stretch would take without corners.
+struct Ideal {
+    /// The whole way at the feedrate.
+    at_feedrate: f64,
+    /// Starting at one end and stopping at the other.
+    stop: f64,
+}
+
+impl Ideal {
+    fn of<const N: usize>(legs: &[Leg<N>]) -> Self {
+        let at_feedrate = legs
+            .iter()
+            .map(|leg| leg.length / leg.limits.velocity)
+            .sum();
+        let length: f64 = legs.iter().map(|leg| leg.length).sum();
+        let ends = [legs.first(), legs.last()];
+        // Half of a start or a stop is lost against passing at speed.
+        let stop = ends
+            .iter()
+            .flatten()
+            .map(|leg| {
+                0.5 * leg
+                    .limits
+                    .time_to_change(leg.limits.reachable_within(length))
+            })
+            .sum();
+        Self { at_feedrate, stop }
+    }
+}
+
+impl<const N: usize> Stretches<N> {
+    /// How a stretch is travelled fastest. With superposed corners it is planned when that is chosen.
+    pub(super) fn decide(&mut self, legs: &[Leg<N>]) -> Choice {
+        // Where corners merge only lines, stopping at each is among their ways.
+        let certain = !self.watched && !self.has_arc(legs);
+        if certain && legs.len() < FEWEST_LEGS {
+            return Choice::Corners;
+        }
+        let (choice, least) = self.choose(legs);
+        if !self.corners.has_begun() || (certain && choice == Choice::Corners) {
+            return choice;
+        }
+        self.trial.follow(&self.corners);
+        let resting = self.trial.time_to_rest([]);
+        self.trial.follow(&self.corners);
+        let going_on = self.trial.time_to_rest(self.vertices.of(legs));
+        if going_on <= resting + least {
+            Choice::Corners
+        } else if choice == Choice::Corners {
+            Choice::Afresh
+        } else {
+            choice
+        }
+    }
+
+    /// How a stretch is travelled fastest from rest to rest, and its duration. With superposed corners it
+    /// is planned when that is chosen.
+    pub(super) fn choose(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
+        let (mut choice, mut least) = self.without_superposing(legs);
+        if let Some(duration) = self.superpose(legs, least) {
+            (choice, least) = (Choice::Superposed, duration);
+        }
+        (choice, least)
+    }
+
+    /// The same without superposed corners for the whole of it.
+    pub(super) fn without_superposing(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
+        let by_corners = self.by_corners(legs);
+        // Stops are among the choices at every corner, but not inside an arc, which begins and ends
+        // afresh where the motion stops beside it.
+        let several = legs.windows(2).any(|pair| pair[0].ends_before(&pair[1]));
+        if several && self.has_arc(legs) {
+            let apart: f64 = legs
+                .chunk_by(|leg, next| !leg.ends_before(next))
+                .map(|group| self.alone(group))
+                .sum();
+            if apart < by_corners {
+                return (Choice::Apart, apart);
+            }
+        }
+        (Choice::Corners, by_corners)
+    }
+
+    /// Duration of a move, or of lines that are merged into one leg, from rest to rest.
+    fn alone(&mut self, legs: &[Leg<N>]) -> f64 {
+        let by_corners = self.by_corners(legs);
+        self.superpose(legs, by_corners).unwrap_or(by_corners)
+    }
+
+    /// Whether any of the legs belongs to an arc.
+    pub(super) fn has_arc(&self, legs: &[Leg<N>]) -> bool {
+        self.vertices.of(legs).any(|vertex| vertex.bulge > 0.0)
+    }
+
+    /// Plans a stretch with superposed corners; its duration, when that is worth while and less than
+    /// `most`.
+    fn superpose(&mut self, legs: &[Leg<N>], most: f64) -> Option<f64> {
+        if legs.len() < FEWEST_LEGS {
+            return None;
+        }
+        let ideal = Ideal::of(legs);
+        if ideal.at_feedrate + ideal.stop > WORTH_TRYING * most {
+            return None;
+        }
+        self.superposer.plan(legs, ideal.at_feedrate, most)
+    }
+
+    /// Duration of a stretch planned corner by corner from rest to rest.
+    fn by_corners(&mut self, legs: &[Leg<N>]) -> f64 {
+        let Some(first) = legs.first() else {
+            return 0.0;
+        };
+        self.trial.restart(first.start);
+        self.trial.time_to_rest(self.vertices.of(legs))
+    }
+}

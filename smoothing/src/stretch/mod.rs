@@ -1,0 +1,295 @@
+//! Which stretches of a path are travelled with superposed corners.
+//!
+//! Source: ours. The path is cut where it turns sharply or must stop; each stretch between is planned
+//! corner by corner, with superposed corners, and, where it has arcs, move by move, each from rest to
+//! rest, and the fastest counts. Not here: the plans.
+
+mod choose;
+mod travel;
+mod vertices;
+
+use crate::corners::Corners;
+use crate::leg::{Dwell, Leg};
+use crate::merge::{Merger, Vertex};
+use crate::method::Settings;
+use crate::superposed::Superposer;
+use std::collections::VecDeque;
+use toolglide_kinematics::{Piece, Tolerance, Vector};
+use vertices::Vertices;
+
+/// Share of the tolerance that cleaning the path may use: enough for rounding of programs and for the
+/// chords of arcs, and little enough that the curve stays fine.
+pub(crate) const FINE_SHARE: f64 = 0.05;
+
+/// Sine of half the turn angle from which a corner is sharp: a turn of 25 degrees.
+const SHARP: f64 = 0.216;
+
+/// Most legs of a stretch, but for those of an arc.
+const MOST_LEGS: usize = 4096;
+
+/// Most chords of an arc that is not taken by itself, from rest to rest.
+pub(crate) const LONGEST_ARC: usize = 2048;
+
+/// Most vertices of the legs that have not been planned, but for those of an arc.
+const MOST_VERTICES: usize = 8192;
+
+/// A stretch is planned without waiting for more of the path when it has so many legs and is longer than
+/// so many stops.
+const LEGS_AHEAD: usize = 512;
+const STOPS_AHEAD: f64 = 8.0;
+
+/// Plans stretch by stretch.
+#[derive(Clone, Debug)]
+pub(crate) struct Stretches<const N: usize> {
+    merger: Merger<N>,
+    vertices: Vertices<N>,
+    legs: Vec<Leg<N>>,
+    corners: Corners<N>,
+    trial: Corners<N>,
+    superposer: Superposer<N>,
+    /// Legs, the first ones, over which the motion under way with superposed corners has been planned
+    /// already: it goes on from there if it can.
+    planned: usize,
+    /// Length of the legs that have not been planned, each as a share of what a stop takes on it.
+    ahead: f64,
+    /// Whether the legs that have not been planned turn sharply inside an arc.
+    coarse: bool,
+    /// Whether the corners under way have turned an arc: only then may stopping be faster.
+    watched: bool,
+    /// Whether the corners have been closed and begin again at rest.
+    reopen: bool,
+    /// Where the motion that has been closed ends.
+    end: Vector<N>,
+    /// What waits until a stretch with superposed corners has been pulled.
+    events: VecDeque<Event<N>>,
+}
+
+/// What comes from the path, in order.
+#[derive(Clone, Copy, Debug)]
+enum Event<const N: usize> {
+    Leg(Leg<N>),
+    Rest,
+    Dwell(Dwell<N>),
+    Close,
+}
+
+impl<const N: usize> Stretches<N> {
+    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+        Self {
+            merger: Merger::new(start, settings.limits, FINE_SHARE),
+            vertices: Vertices::with_capacity(MOST_VERTICES + LONGEST_ARC),
+            legs: Vec::with_capacity(MOST_LEGS + LONGEST_ARC),
+            corners: Corners::new(start, settings, MOST_VERTICES + LONGEST_ARC),
+            trial: Corners::new(start, settings, 1),
+            superposer: Superposer::new(settings.limits, MOST_LEGS + LONGEST_ARC),
+            planned: 0,
+            ahead: 0.0,
+            coarse: false,
+            watched: false,
+            reopen: false,
+            end: start,
+            events: VecDeque::with_capacity(2 * (MOST_LEGS + LONGEST_ARC) + 8),
+        }
+    }
+
+    /// Takes the next vertex.
+    pub(crate) fn push(&mut self, vertex: Vertex<N>) {
+        self.vertices.push(vertex);
+        if let Some(leg) = self.merger.push(vertex) {
+            self.take(Event::Leg(leg));
+        }
+        let waiting = self.events.iter().find_map(|event| match event {
+            Event::Leg(leg) => Some(leg),
+            _ => None,
+        });
+        let oldest = self.legs.get(self.planned).or(waiting);
+        self.vertices
+            .forget_before(oldest.map_or(self.merger.first(), |leg| leg.vertices[0]));
+    }
+
+    /// An arc begins, whose tolerance this is, or has ended: its legs are the same whatever is beside it.
+    pub(crate) fn part(&mut self, tolerance: Tolerance) {
+        self.finish_leg();
+        if self.merger.narrows(tolerance) {
+            self.rest();
+        }
+    }
+
+    /// The motion must rest where the path has come to.
+    pub(crate) fn rest(&mut self) {
+        self.finish_leg();
+        self.take(Event::Rest);
+        if let Some(carried) = self.merger.take_carried() {
+            self.take(Event::Dwell(carried));
+        }
+    }
+
+    /// The motion must pause where the path has come to.
+    pub(crate) fn dwell(&mut self, pause: Dwell<N>) {
+        self.finish_leg();
+        self.take(Event::Rest);
+        let pause = match self.merger.take_carried() {
+            Some(carried) => carried.then(pause),
+            None => pause,
+        };
+        self.take(Event::Dwell(pause));
+    }
+
+    /// The path ends.
+    pub(crate) fn close(&mut self) {
+        self.rest();
+        self.take(Event::Close);
+    }
+
+    fn finish_leg(&mut self) {
+        if let Some(leg) = self.merger.flush() {
+            self.take(Event::Leg(leg));
+        }
+    }
+
+    /// The next piece of finished motion.
+    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
+        loop {
+            if let Some(piece) = self.corners.pull() {
+                return Some(piece);
+            }
+            // The corners before a stretch have been closed, and begin again at rest after it.
+            if let Some(piece) = self.superposer.pull() {
+                if self.superposer.is_done() {
+                    self.reopen = self.planned == 0;
+                    self.resume();
+                }
+                return Some(piece);
+            }
+            if !self.reopen {
+                return None;
+            }
+            self.resume();
+        }
+    }
+
+    /// Begins again after a stretch.
+    fn resume(&mut self) {
+        if self.reopen {
+            self.reopen = false;
+            self.watched = false;
+            self.corners.restart(self.end);
+        }
+        self.work();
+    }
+
+    fn take(&mut self, event: Event<N>) {
+        self.events.push_back(event);
+        self.work();
+    }
+
+    /// Works off what has come, up to the next stretch with superposed corners.
+    fn work(&mut self) {
+        while self.superposer.is_done()
+            && !self.reopen
+            && let Some(event) = self.events.pop_front()
+        {
+            match event {
+                Event::Leg(leg) => self.take_leg(leg),
+                Event::Rest if self.legs.is_empty() => self.come_to_rest(),
+                Event::Rest => {
+                    // After whatever the stretch may put before it.
+                    self.events.push_front(Event::Rest);
+                    self.settle(Cause::Rest);
+                }
+                Event::Dwell(pause) => self.corners.dwell(pause),
+                Event::Close => self.corners.close(),
+            }
+        }
+    }
+
+    fn take_leg(&mut self, leg: Leg<N>) {
+        if let Some(last) = self.legs.last()
+            && self.legs.len() > self.planned
+        {
+            let sharp = 0.5 * (leg.direction - last.direction).norm() > SHARP;
+            let cause = if last.ends_before(&leg) {
+                if sharp || self.coarse {
+                    Some(Cause::Sharp)
+                } else {
+                    self.is_full().then_some(Cause::Full)
+                }
+            } else if sharp && !self.coarse {
+                self.coarse = true;
+                if let Some(begin) = self.begin_of_move() {
+                    // A stretch that ends before the arc, and one that begins with it.
+                    self.events.push_front(Event::Leg(leg));
+                    let mut legs = std::mem::take(&mut self.legs);
+                    self.put_back(&mut legs, begin);
+                    self.legs = legs;
+                    self.settle(Cause::Sharp);
+                    return;
+                }
+                None
+            } else {
+                (self.is_within_a_long_move() && self.is_full()).then_some(Cause::Full)
+            };
+            if let Some(cause) = cause {
+                self.events.push_front(Event::Leg(leg));
+                self.settle(cause);
+                return;
+            }
+        }
+        self.ahead += stops_within(&leg);
+        self.legs.push(leg);
+    }
+
+    /// Whether the legs that have not been planned reach so far that what follows matters little, or are
+    /// as many as can be held.
+    fn is_full(&self) -> bool {
+        let fresh = &self.legs[self.planned..];
+        (fresh.len() >= LEGS_AHEAD && self.ahead > STOPS_AHEAD)
+            || self.legs.len() >= MOST_LEGS
+            || self.vertices.of(fresh).len() >= MOST_VERTICES
+    }
+
+    /// The leg with which the move of the last one begins, when there are others before it that have not
+    /// been planned.
+    fn begin_of_move(&self) -> Option<usize> {
+        (self.planned + 1..self.legs.len())
+            .rev()
+            .find(|&index| self.legs[index - 1].ends_before(&self.legs[index]))
+    }
+
+    /// Whether the last legs belong to one move that rests at both ends, because it is so long.
+    fn is_within_a_long_move(&self) -> bool {
+        let fresh = &self.legs[self.planned..];
+        fresh.len() > LONGEST_ARC
+            && !fresh[fresh.len() - LONGEST_ARC - 1].ends_before(&fresh[fresh.len() - 1])
+    }
+
+    /// Plans the stretch that has been collected.
+    fn settle(&mut self, cause: Cause) {
+        self.ahead = 0.0;
+        self.coarse = false;
+        let mut legs = std::mem::take(&mut self.legs);
+        if self.planned > 0 {
+            self.go_on(&mut legs, cause);
+        } else {
+            self.set_out(&mut legs, cause);
+        }
+        self.legs = legs;
+    }
+}
+
+/// Why a stretch ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cause {
+    /// The motion must rest.
+    Rest,
+    /// The path turns sharply.
+    Sharp,
+    /// There is no room for more.
+    Full,
+}
+
+/// Length of a leg as a share of what a stop takes.
+fn stops_within<const N: usize>(leg: &Leg<N>) -> f64 {
+    let speed = leg.limits.velocity;
+    leg.length / (0.5 * speed * leg.limits.time_to_change(speed))
+}

@@ -1,0 +1,184 @@
+//! From stretch to stretch: at rest, or at speed where that is faster.
+//!
+//! Source: ours. What is handed out can always be brought to rest in no more time than full stops at all
+//! moves so far would have taken: a stretch goes on corner by corner only where the end of the
+//! known path is reached at rest sooner that way than by a rest before it. Not here: plans from rest to
+//! rest.
+
+use super::choose::Choice;
+use super::{Cause, Event, MOST_LEGS, SHARP, Stretches};
+use crate::leg::Leg;
+use toolglide_kinematics::Tangential;
+use toolglide_kinematics::numeric::LENGTH_SLACK;
+use toolglide_profiles::Rise;
+
+/// Share of the velocity of a leg at which superposed corners are entered on it.
+const ENTERING: f64 = 0.995;
+
+impl<const N: usize> Stretches<N> {
+    /// Plans a stretch where the motion is at rest, or is turning corners.
+    pub(super) fn set_out(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+        match self.decide(legs) {
+            Choice::Corners => {
+                self.watched |= self.has_arc(legs);
+                let Self {
+                    corners, vertices, ..
+                } = self;
+                for vertex in vertices.of(legs) {
+                    corners.push(*vertex);
+                }
+                self.pass(legs);
+            }
+            Choice::Superposed => {
+                if !(self.corners.has_begun() && self.enter(legs)) {
+                    self.corners.close();
+                }
+                self.travel(legs, cause);
+            }
+            Choice::Afresh => {
+                self.come_to_rest();
+                self.put_back(legs, 0);
+            }
+            Choice::Apart => {
+                self.come_to_rest();
+                self.put_back_apart(legs);
+            }
+        }
+    }
+
+    /// The legs are behind the motion that has been planned.
+    fn pass(&mut self, legs: &mut Vec<Leg<N>>) {
+        if let Some(last) = legs.last() {
+            self.end = last.end;
+        }
+        legs.clear();
+    }
+
+    /// Brings corners under way to rest; what follows begins again there.
+    pub(super) fn come_to_rest(&mut self) {
+        if self.corners.has_begun() {
+            self.corners.close();
+            self.reopen = true;
+        }
+    }
+
+    /// Puts the legs from an index on back before everything that waits.
+    pub(super) fn put_back(&mut self, legs: &mut Vec<Leg<N>>, from: usize) {
+        for leg in legs.drain(from..).rev() {
+            self.events.push_front(Event::Leg(leg));
+        }
+    }
+
+    /// Puts all legs back, with a rest between moves.
+    fn put_back_apart(&mut self, legs: &mut Vec<Leg<N>>) {
+        let mut next: Option<Leg<N>> = None;
+        for leg in legs.drain(..).rev() {
+            if next.is_some_and(|next| leg.ends_before(&next)) {
+                self.events.push_front(Event::Rest);
+            }
+            self.events.push_front(Event::Leg(leg));
+            next = Some(leg);
+        }
+    }
+
+    /// Plans a stretch that has been planned from rest so that it is entered at speed, on its first leg;
+    /// `false` when that is not possible or not faster.
+    fn enter(&mut self, legs: &[Leg<N>]) -> bool {
+        let Some(first) = legs.first() else {
+            return false;
+        };
+        let speed = ENTERING * first.limits.velocity;
+        let Tangential {
+            acceleration, jerk, ..
+        } = first.limits;
+        // The corner before it ends within its reach, and from whatever speed the rise is no longer.
+        let least = (0.5 * acceleration * acceleration / jerk).min(speed);
+        let rise = Rise::to_peak(0.0, 0.0, speed, acceleration, jerk);
+        let distance = (0.5 * (speed + least) * (speed + least) / acceleration
+            + 4.0 * first.tolerance.length() / SHARP)
+            .max(rise.distance * (1.0 + LENGTH_SLACK));
+        let before = rise.duration() + (distance - rise.distance) / speed;
+        let most = self.superposer.planned() - before;
+        if self
+            .superposer
+            .plan_entering(legs, distance, speed, most)
+            .is_none()
+        {
+            return false;
+        }
+        let Self {
+            corners, vertices, ..
+        } = self;
+        corners.part();
+        for vertex in vertices.of(&legs[..1]) {
+            corners.push(*vertex);
+        }
+        corners.close_cruising(distance, speed);
+        true
+    }
+
+    /// Plans a stretch from where the motion under way may still go on, or else brings that to rest where
+    /// it was planned to.
+    pub(super) fn go_on(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+        let fresh = &legs[self.planned..];
+        let apart = match cause {
+            _ if fresh.is_empty() => None,
+            // Where the stretch is not cut only for its length, corners, which have not to rest at its ends,
+            // may be faster.
+            Cause::Full => Some(self.without_superposing(fresh).1),
+            _ => match self.choose(fresh) {
+                (Choice::Superposed, least) => Some(least),
+                _ => None,
+            },
+        };
+        let most = apart.map(|apart| self.superposer.remaining() + apart);
+        if most.is_some_and(|most| self.superposer.plan_onward(legs, most).is_some()) {
+            self.travel(legs, cause);
+            return;
+        }
+        let is_last = fresh.is_empty();
+        self.put_back(legs, self.planned);
+        self.planned = 0;
+        if let Some(last) = legs.pop() {
+            self.end = last.end;
+            legs.clear();
+            if !is_last
+                && apart.is_none()
+                && let Some((point, speed)) = self.superposer.leave()
+            {
+                let rest = Leg {
+                    start: point,
+                    length: (last.end - point).norm(),
+                    ..last
+                };
+                self.corners.restart_moving(rest, speed);
+                return;
+            }
+        }
+        self.superposer.finish();
+    }
+
+    /// Travels what has been planned with superposed corners.
+    fn travel(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+        if let Some(last) = legs.last() {
+            self.end = last.end;
+        }
+        let passed = if cause == Cause::Rest {
+            self.superposer.travel();
+            None
+        } else {
+            self.superposer.travel_openly()
+        };
+        match passed {
+            Some(passed) if legs.len() - passed <= MOST_LEGS / 2 => {
+                legs.drain(..passed);
+                self.planned = legs.len();
+            }
+            _ => {
+                self.superposer.finish();
+                legs.clear();
+                self.planned = 0;
+            }
+        }
+    }
+}

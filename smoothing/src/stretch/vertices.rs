@@ -1,0 +1,54 @@
+//! The vertices of the legs that may still be planned corner by corner.
+//!
+//! Source: ours. Corners have more of the tolerance to merge with than fine stretches have, and merge
+//! best what has not been merged before. Not here: either merging.
+
+use crate::leg::Leg;
+use crate::merge::Vertex;
+use std::collections::VecDeque;
+use std::collections::vec_deque::Iter;
+
+/// The latest vertices of the path, found by their numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Vertices<const N: usize> {
+    queue: VecDeque<Vertex<N>>,
+    /// Number of the first that is kept.
+    first: u64,
+}
+
+impl<const N: usize> Vertices<N> {
+    pub(super) fn with_capacity(count: usize) -> Self {
+        Self {
+            queue: VecDeque::with_capacity(count),
+            first: 0,
+        }
+    }
+
+    pub(super) fn push(&mut self, vertex: Vertex<N>) {
+        self.queue.push_back(vertex);
+    }
+
+    /// The vertices of consecutive legs.
+    pub(super) fn of(&self, legs: &[Leg<N>]) -> Iter<'_, Vertex<N>> {
+        let range = match legs {
+            [first, .., last] => self.place(first.vertices[0])..self.place(last.vertices[1]),
+            [only] => self.place(only.vertices[0])..self.place(only.vertices[1]),
+            [] => 0..0,
+        };
+        self.queue.range(range)
+    }
+
+    /// Forgets the vertices before a number.
+    pub(super) fn forget_before(&mut self, number: u64) {
+        let count = self.place(number);
+        if count > 0 {
+            self.queue.drain(..count);
+            self.first = number;
+        }
+    }
+
+    fn place(&self, number: u64) -> usize {
+        usize::try_from(number.saturating_sub(self.first))
+            .map_or(self.queue.len(), |place| place.min(self.queue.len()))
+    }
+}
