@@ -6,7 +6,6 @@ use crate::block::{AXES, Block, OFFSETS};
 use crate::codes::{Distance, Motion, Plane};
 use crate::error::Fault;
 use crate::lower::Lowering;
-use crate::machining_error::MachiningError;
 use crate::modal::whole;
 use crate::place::Span;
 use crate::reason::Reason;
@@ -84,11 +83,6 @@ pub(crate) fn arc(
         }
     }
     let counter_clockwise = motion == Motion::CounterClockwise;
-    let degrees = state.offsets.rotation();
-    if degrees != 0.0 && plane != Plane::Xy {
-        let reason = MachiningError::RotatedArc { degrees };
-        return Err(Fault::new(motion_span(block), reason.into()));
-    }
     let (center, blamed) = center(block, state, counter_clockwise, start, end)?;
     let turns = whole(block, b'P', "number of turns", 1, MOST_TURNS)?.unwrap_or(1);
     Arc::about(start, end, center, axes, counter_clockwise, turns - 1)

@@ -1,15 +1,16 @@
 //! What O words do: conditions, loops, subroutines.
 //!
-//! Source: the chapter on O codes of the manual of LinuxCNC. A subroutine must stand above its
-//! calls, or in a file of its name. Not here: how lines are read and remembered.
+//! Source: the chapter on O codes of the manual of LinuxCNC. A subroutine stands above its calls, in a file
+//! of its name, or further below, in this order. Not here: how lines are read and remembered.
 
 use crate::control::{Control, Keyword, Label, control, o_word};
+use crate::definitions::Definitions;
 use crate::error::Fault;
 use crate::flow::{Call, Flow, Open};
 use crate::flow_error::FlowError;
 use crate::lower::Lowering;
 use crate::parameters::{DEEPEST_CALL, LOCAL_PARAMETERS};
-use crate::recording::Recording;
+use crate::recording::{LONGEST_RECORDING, Recording};
 use std::io::BufRead;
 use std::sync::Arc;
 
@@ -70,6 +71,15 @@ impl<R: BufRead> Flow<R> {
         if self.depth() > 0 {
             return Err(control.fault(FlowError::NestedSubroutine));
         }
+        if let Some(other) = self.subroutines.get(&control.label) {
+            // A loop comes by the same lines again.
+            let line = other.number(0).saturating_sub(1);
+            let here = self.place(control.span);
+            if here.line() != line || here.file() != &*other.file {
+                let label = control.label.to_string().into();
+                return Err(control.fault(FlowError::DefinedTwice { label, line }));
+            }
+        }
         let recording = self.record(control, false, Keyword::EndSub)?;
         self.subroutines.insert(control.label.clone(), recording);
         Ok(())
@@ -89,6 +99,9 @@ impl<R: BufRead> Flow<R> {
         if !self.subroutines.contains_key(&control.label) {
             self.load(control)?;
         }
+        if !self.subroutines.contains_key(&control.label) {
+            self.find_below(control)?;
+        }
         let Some(recording) = self.subroutines.get(&control.label).map(Arc::clone) else {
             let label = control.label.to_string().into();
             return Err(control.fault(FlowError::NoSubroutine { label }));
@@ -96,6 +109,29 @@ impl<R: BufRead> Flow<R> {
         state.enter(&arguments);
         self.run(recording, Call::Subroutine);
         Ok(())
+    }
+
+    /// Looks for the subroutine in the rest of the program.
+    fn find_below(&mut self, control: &Control) -> Result<(), Fault> {
+        let because = |reason| control.because(reason);
+        let rest = Arc::clone(&self.rest().map_err(because)?.recording);
+        let mut definitions = Definitions::of(&rest.file, None);
+        for index in 0..rest.len() {
+            if !definitions.take(rest.line(index), rest.number(index)) {
+                let bound = LONGEST_RECORDING;
+                return Err(control.fault(FlowError::TooLong { bound }));
+            }
+        }
+        // One whose end is missing is refused where it stands.
+        for (label, lines) in definitions.finish().unwrap_or_default() {
+            self.know(label, lines);
+        }
+        Ok(())
+    }
+
+    fn know(&mut self, label: Label, lines: Recording) {
+        let place = self.subroutines.entry(label);
+        place.or_insert_with(|| Arc::new(lines));
     }
 
     /// Looks for a file with the subroutine, and takes all subroutines of it.
@@ -116,34 +152,18 @@ impl<R: BufRead> Flow<R> {
             Err(error) => return Err(bad(format!("cannot be read: {error}"))),
         };
         let file: Arc<str> = Arc::from(format!("{name}.ngc"));
-        let outer = self.line();
-        let mut recording: Option<(Label, Recording)> = None;
+        let mut definitions = Definitions::of(&file, Some(self.line()));
         for (line, number) in text.split(|&byte| byte == b'\n').zip(1_u64..) {
             let line = line.strip_suffix(b"\r").unwrap_or(line);
-            let found = o_word(line)
-                .and_then(|at| control_of(line, at))
-                .map(|found| (found.label, found.keyword));
-            if let Some((label, lines)) = &mut recording {
-                if !lines.push(line) {
-                    return Err(bad("is too long".to_owned()));
-                }
-                if found == Some((label.clone(), Keyword::EndSub))
-                    && let Some((label, lines)) = recording.take()
-                {
-                    self.subroutines
-                        .entry(label)
-                        .or_insert_with(|| Arc::new(lines));
-                }
-            } else if let Some((label, Keyword::Sub)) = found {
-                let mut lines = Recording::new(&file, number + 1);
-                lines.outer = Some(outer);
-                recording = Some((label, lines));
+            if !definitions.take(line, number) {
+                return Err(bad("is too long".to_owned()));
             }
         }
-        match recording {
-            Some((label, _)) => Err(bad(format!("has no ENDSUB of {label}"))),
-            None => Ok(()),
+        let found = definitions.finish();
+        for (label, lines) in found.map_err(|label| bad(format!("has no ENDSUB of {label}")))? {
+            self.know(label, lines);
         }
+        Ok(())
     }
 
     fn leave_subroutine(&mut self, control: &Control, state: &mut Lowering) -> Result<(), Fault> {
@@ -215,10 +235,10 @@ impl<R: BufRead> Flow<R> {
         }
         let value = control.argument(self.text(), state)?.round();
         let most = MOST_REPETITIONS;
-        if !(0.0..=most).contains(&value) {
+        if value > most {
             return Err(control.fault(FlowError::BadRepetitions { value, most }));
         }
-        if value == 0.0 {
+        if value <= 0.0 {
             self.skip(control, &[Keyword::EndRepeat], "ENDREPEAT")?;
         } else {
             self.begin(control, Keyword::Repeat, value);
@@ -277,9 +297,4 @@ impl<R: BufRead> Flow<R> {
             None => Err(control.not_open(opening)),
         }
     }
-}
-
-/// A line with an O word, as far as it can be read without values.
-fn control_of(line: &[u8], at: usize) -> Option<Control> {
-    control(line, at, &crate::control::NoValues).ok().flatten()
 }

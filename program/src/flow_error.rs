@@ -46,7 +46,7 @@ pub enum FlowError {
         closing: &'static str,
     },
     /// A call of a subroutine that nobody has written.
-    #[error("there is no subroutine {label}: neither above this line nor in a file of that name")]
+    #[error("there is no subroutine {label}: neither in this program nor in a file of that name")]
     NoSubroutine {
         /// The label.
         label: Box<str>,
@@ -69,6 +69,14 @@ pub enum FlowError {
     /// `M99` in a subroutine by O words.
     #[error("M99 does not end a subroutine; write ENDSUB or RETURN")]
     MixedReturn,
+    /// A subroutine that is written twice.
+    #[error("subroutine {label} was already defined in line {line}")]
+    DefinedTwice {
+        /// The label.
+        label: Box<str>,
+        /// Where.
+        line: u64,
+    },
     /// A file that should hold a subroutine, but does not.
     #[error("the file of subroutine {label} {message}")]
     BadFile {
@@ -107,7 +115,7 @@ pub enum FlowError {
         bound: usize,
     },
     /// A loop that is repeated a number of times that cannot be.
-    #[error("repetitions are {value}, but must be from 0 to {most}")]
+    #[error("repetitions are {value}, but may be {most} at most")]
     BadRepetitions {
         /// The number.
         value: f64,

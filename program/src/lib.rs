@@ -66,6 +66,8 @@ mod codes;
 mod compensation;
 mod control;
 mod cycles;
+mod data;
+mod definitions;
 mod error;
 mod expression;
 mod flow;

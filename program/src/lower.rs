@@ -6,7 +6,7 @@
 use crate::arcs::arc;
 use crate::block::Block;
 use crate::chords::count;
-use crate::codes::{FeedMode, Group, Motion, Once, PathControl, Saving, Stop};
+use crate::codes::{FeedMode, Group, Motion, Once, PathControl, Plane, Saving, Stop};
 use crate::compensation::Compensation;
 use crate::cycles::CycleState;
 use crate::error::{Fault, Remark};
@@ -247,7 +247,7 @@ impl Lowering {
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         let end = self.end(block)?;
-        if motion.is_arc() && !self.offsets.frame().is_straight() {
+        if motion.is_arc() && self.turns_arcs() {
             return self.turned_arc(block, motion, end, moves);
         }
         let start = self.position;
@@ -285,7 +285,13 @@ impl Lowering {
         Ok(())
     }
 
-    /// An arc in a frame that is turned, as chords: its plane is none of the machine.
+    /// Whether the plane of arcs is none of the machine.
+    fn turns_arcs(&self) -> bool {
+        let upright = self.modal.plane != Plane::Xy && self.offsets.rotation() != 0.0;
+        upright || !self.offsets.frame().is_straight()
+    }
+
+    /// An arc in a plane that is none of the machine, as chords.
     fn turned_arc(
         &mut self,
         block: &Block,
@@ -294,6 +300,16 @@ impl Lowering {
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         let span = motion_span(block);
+        if self.compensation.is_some() {
+            let (code, state) = (
+                motion.code(),
+                "in a plane that is turned, with compensation on",
+            );
+            return Err(Fault::new(
+                span,
+                MachiningError::NotNow { code, state }.into(),
+            ));
+        }
         // In the coordinates of the program the arc is like any other.
         let offsets = std::mem::replace(&mut self.offsets, Offsets::new());
         let found = arc(block, self, motion, self.program, end);

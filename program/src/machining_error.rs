@@ -173,12 +173,4 @@ pub enum MachiningError {
     /// The modal state cannot be restored.
     #[error("there is no saved state to restore")]
     NothingSaved,
-    /// A rotated coordinate system that would turn an arc out of all planes.
-    #[error(
-        "an arc outside the XY plane in a coordinate system that is rotated by {degrees} degrees"
-    )]
-    RotatedArc {
-        /// The rotation.
-        degrees: f64,
-    },
 }

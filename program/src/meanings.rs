@@ -137,6 +137,7 @@ pub(crate) fn miscellaneous(tenths: u16) -> Result<(Group, Meaning), Unread> {
         // Mist and flood may be turned on together, but neither of them beside off.
         7 | 9 => (Group::Coolant, Meaning::Nothing),
         8 => (Group::SecondCoolant, Meaning::Nothing),
+        19 => (Group::Outside, Meaning::Outside),
         48..=53 => (Group::Overrides, Meaning::Nothing),
         62..=68 => (Group::Outside, Meaning::Outside),
         70 => saving(Saving::Save),

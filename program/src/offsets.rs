@@ -5,7 +5,7 @@
 //! Not here: who sets them.
 
 use crate::frame::Frame;
-use crate::parameters::{Parameters, SYSTEM};
+use crate::parameters::Parameters;
 use toolglide_kinematics::Vector;
 
 /// Coordinate systems, `G54` to `G59.3`.
@@ -29,6 +29,8 @@ pub(crate) struct Offsets {
     shift: Vector<3>,
     tool: Vector<3>,
     frame: Frame,
+    /// The coordinate system in force, from 1. Its parameters count from when it is selected.
+    system: u8,
     rotation: f64,
     sine: f64,
     cosine: f64,
@@ -43,6 +45,7 @@ impl Offsets {
             shift: Vector::zeros(),
             tool: Vector::zeros(),
             frame: Frame::NONE,
+            system: 1,
             rotation: 0.0,
             sine: 0.0,
             cosine: 1.0,
@@ -115,6 +118,14 @@ impl Offsets {
         self.look();
     }
 
+    /// The same offsets in another coordinate system, without shift and tool.
+    pub(crate) fn bare(mut self, system: u8, parameters: &Parameters) -> Self {
+        self.shift = Vector::zeros();
+        self.tool = Vector::zeros();
+        self.take_system(system, parameters);
+        self
+    }
+
     /// Ends the shift; its parameters are kept or cleared.
     pub(crate) fn end_shift(&mut self, clear: bool, parameters: &mut Parameters) {
         if clear {
@@ -131,9 +142,15 @@ impl Offsets {
         self.set_shift(shift, parameters);
     }
 
-    /// Takes the coordinate system that the parameters name.
-    pub(crate) fn take_system(&mut self, parameters: &Parameters) {
-        let first = origin(system(parameters));
+    /// The coordinate system in force, from 1.
+    pub(crate) fn system(&self) -> u8 {
+        self.system
+    }
+
+    /// Takes a coordinate system from its parameters.
+    pub(crate) fn take_system(&mut self, system: u8, parameters: &Parameters) {
+        self.system = system;
+        let first = origin(system);
         let origin = Vector::from_fn(|axis, _| parameters.get(first + axis_number(axis)));
         self.set_origin(origin, parameters.get(first + ROTATION));
     }
@@ -154,19 +171,6 @@ impl Offsets {
             && self.shift == zero
             && self.tool == zero;
     }
-}
-
-/// The coordinate system in force, from 1.
-pub(crate) fn system(parameters: &Parameters) -> u8 {
-    let written = parameters.get(SYSTEM).round();
-    (1..=SYSTEMS)
-        .find(|&system| (f64::from(system) - written).abs() < 0.5)
-        .unwrap_or(1)
-}
-
-/// Changes the coordinate system in force.
-pub(crate) fn set_system(system: u8, parameters: &mut Parameters) {
-    parameters.put(SYSTEM, f64::from(system));
 }
 
 /// First parameter of the origin of a system.
@@ -195,7 +199,7 @@ mod tests {
             parameters.put(number, value);
         }
         let mut offsets = Offsets::new();
-        offsets.take_system(&parameters);
+        offsets.take_system(1, &parameters);
         offsets.set_shift(Vector::<3>::new(1.0, 0.0, 0.0), &mut parameters);
         offsets.set_tool(Vector::<3>::new(0.0, 0.0, 7.0));
         let point = Vector::<3>::new(2.0, 0.0, 1.0);

@@ -1,15 +1,16 @@
-//! Codes that set the machine up: coordinate systems, offsets, stored points.
+//! Codes that hold for one block: shifts, machine coordinates, stored points.
 //!
-//! Source: `G10`, `G28` to `G30.1`, `G52` to `G59.3` and `G92` to `G92.3` of RS274/NGC
-//! and LinuxCNC, where `G52` writes the offsets of `G92`. Parameters hold offsets in mm. Not here: what offsets do to a point.
+//! Source: `G28` to `G30.1`, `G52` to `G59.3` and `G92` to `G92.3` of RS274/NGC
+//! and LinuxCNC, where `G52` writes the offsets of `G92`. Parameters hold offsets in mm. Not
+//! here: `G10`, and what offsets do to a point.
 
 use crate::block::{AXES, Block};
-use crate::codes::{Code, Group, Motion, Once, ToolLength};
+use crate::codes::{Group, Motion, Once, ToolLength};
 use crate::error::{Fault, Remark};
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
-use crate::modal::whole;
-use crate::offsets::{SYSTEMS, axis_number, origin, rotation, set_system, system};
+use crate::offsets::axis_number;
+use crate::parameters::SYSTEM;
 use crate::place::Span;
 use crate::reason::Reason;
 use std::collections::VecDeque;
@@ -57,10 +58,10 @@ impl Lowering {
             self.tool_length(block, length, remarks)?;
         }
         if let Some(number) = block.coordinates
-            && number != system(&self.parameters)
+            && number != self.offsets.system()
         {
-            set_system(number, &mut self.parameters);
-            self.offsets.take_system(&self.parameters);
+            self.parameters.put(SYSTEM, f64::from(number));
+            self.offsets.take_system(number, &self.parameters);
             self.program = self.offsets.in_program(self.position);
         }
         Ok(())
@@ -135,88 +136,25 @@ impl Lowering {
             .map_or(Span::default(), |(_, span)| span);
         let home =
             Vector::from_fn(|axis, _| self.parameters.get(u32::from(first) + axis_number(axis)));
-        let mut there = home;
-        if block.first_of(&AXES).is_some() {
-            let by_way = self.end(block)?;
-            self.go(by_way, Feedrate::RAPID, span, moves)?;
-            there = self.position;
-            for (axis, letter) in AXES.into_iter().enumerate() {
-                if block.has(letter) {
-                    there[axis] = home[axis];
-                }
-            }
-        }
+        let mut home = home;
         for axis in 0..3 {
             if !self.settings.axes[axis] {
-                there[axis] = self.position[axis];
+                home[axis] = self.position[axis];
             }
         }
-        let end = self.offsets.in_program(there);
-        self.go(end, Feedrate::RAPID, span, moves)
-    }
-
-    /// `G10`.
-    fn set_data(&mut self, block: &Block) -> Result<(), Fault> {
-        let Some(kind) = whole(block, b'L', "kind of data", 1, 20)? else {
-            return Err(missing(block, 'L'));
-        };
-        match kind {
-            1 | 10 => self.set_tool(block, kind == 10),
-            2 | 20 => self.set_system_data(block, kind == 20),
-            _ => {
-                let reason = Reason::NotSupported {
-                    code: Code::new(b'G', 100),
-                    what: "data other than tools (L1 L10) and coordinate systems (L2 L20)",
-                };
-                Err(Fault::new(block.span(b'L'), reason))
-            }
+        let home = self.offsets.in_program(home);
+        if block.first_of(&AXES).is_none() {
+            return self.go(home, Feedrate::RAPID, span, moves);
         }
-    }
-
-    fn set_system_data(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
-        let Some(number) = whole(block, b'P', "coordinate system", 0, u32::from(SYSTEMS))? else {
-            return Err(missing(block, 'P'));
-        };
-        let number = match u8::try_from(number) {
-            Ok(0) | Err(_) => system(&self.parameters),
-            Ok(number) => number,
-        };
-        if let Some(degrees) = block.get(b'R') {
-            self.parameters.put(rotation(number), degrees % 360.0);
-        }
-        // Where the tool is in this system, if its origin were that of the machine.
-        let mut bare = self.offsets;
-        let mut scratch = [0.0; 3];
+        let mut end = self.end(block)?;
+        self.go(end, Feedrate::RAPID, span, moves)?;
+        // The axes that are named are those of the program, which may be turned.
         for (axis, letter) in AXES.into_iter().enumerate() {
-            if let Some(length) = self.length(block, letter)? {
-                scratch[axis] = length;
-                let place = origin(number) + axis_number(axis);
-                if !by_position {
-                    self.parameters.put(place, length);
-                }
+            if block.has(letter) {
+                end[axis] = home[axis];
             }
         }
-        if by_position {
-            let degrees = self.parameters.get(rotation(number));
-            let mut target = bare.in_program(self.position);
-            bare.set_origin(Vector::zeros(), degrees);
-            for (axis, letter) in AXES.into_iter().enumerate() {
-                target[axis] = if block.has(letter) {
-                    scratch[axis]
-                } else {
-                    bare.in_program(self.position)[axis]
-                };
-            }
-            let origin_there = self.position - bare.on_machine(target);
-            for (axis, letter) in AXES.into_iter().enumerate() {
-                if block.has(letter) {
-                    let place = origin(number) + axis_number(axis);
-                    self.parameters.put(place, origin_there[axis]);
-                }
-            }
-        }
-        self.offsets.take_system(&self.parameters);
-        Ok(())
+        self.go(end, Feedrate::RAPID, span, moves)
     }
 }
 

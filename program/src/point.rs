@@ -86,10 +86,13 @@ impl Lowering {
         let here = [self.program[0], self.program[1]];
         let mut distance = here[0].hypot(here[1]);
         let mut angle = here[1].atan2(here[0]).to_degrees();
+        let incremental = self.modal.distance == Distance::Incremental;
+        if distance == 0.0 && incremental {
+            return Err(refuse("G90 at the origin, which has no angle"));
+        }
         if distance == 0.0 && !(block.has(b'@') && block.has(b'^')) {
             return Err(refuse("both @ and ^ at the origin, which has no angle"));
         }
-        let incremental = self.modal.distance == Distance::Incremental;
         if let Some(value) = block.get(b'@') {
             let length = self.modal.units.length(value);
             let sum = if incremental {

@@ -242,6 +242,7 @@ impl<R: BufRead> Program<R> {
             }
             Some(_) => {}
         }
+        self.lowering.line = self.flow.line();
         let text = self.flow.text();
         self.block.read(
             text,

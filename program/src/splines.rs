@@ -81,6 +81,9 @@ impl Lowering {
             let (Some(p), Some(q)) = (self.length(block, b'P')?, self.length(block, b'Q')?) else {
                 return Err(missing("P and Q"));
             };
+            if block.has(b'I') != block.has(b'J') {
+                return Err(missing("both I and J, or neither"));
+            }
             // Without offsets a cubic goes on as the last one ended.
             let going_on = self.spline_end.map(|[p, q]| [-p, -q]);
             let offset = offset.or(going_on).ok_or_else(|| missing("I and J"))?;

@@ -9,9 +9,9 @@ use crate::error::Fault;
 use crate::expression::Parameter;
 use crate::lexer::Assignment;
 use crate::lower::Lowering;
-use crate::offsets::system;
 use crate::parameters::Values;
 use crate::units::Units;
+use toolglide_kinematics::Vector;
 
 /// Parameters of the tool in the spindle: its number, its offset in force from X, its diameter.
 const TOOL: u32 = 5400;
@@ -20,9 +20,6 @@ const DIAMETER: u32 = 5410;
 
 /// First parameter of the position in the program.
 const POSITION: u32 = 5420;
-
-/// Parameters from the first origin to the last rotation, and those of `G92`.
-const OFFSETS: std::ops::RangeInclusive<u32> = 5210..=5390;
 
 impl Values for Lowering {
     fn numbered(&self, number: u32) -> f64 {
@@ -61,6 +58,11 @@ impl Lowering {
             "_a" => self.rotary[0],
             "_b" => self.rotary[1],
             "_c" => self.rotary[2],
+            "_abs_x" => units.written(self.position[0]),
+            "_abs_y" => units.written(self.position[1]),
+            "_abs_z" => units.written(self.position[2]),
+            "_u" | "_v" | "_w" => 0.0,
+            "_tool_offset" => truth(self.offsets.tool() != Vector::<3>::zeros()),
             "_feed" => units.written(modal.feedrate.unwrap_or(0.0)) * 60.0,
             "_rpm" => modal.spindle_speed,
             "_line" => f64::from(self.line),
@@ -78,7 +80,7 @@ impl Lowering {
             "_units_per_minute" => truth(modal.feed_mode == FeedMode::PerMinute),
             "_units_per_rev" => 0.0,
             "_coord_system" => {
-                let system = system(&self.parameters);
+                let system = self.offsets.system();
                 f64::from(if system <= 6 {
                     530 + 10 * u16::from(system)
                 } else {
@@ -100,17 +102,13 @@ impl Lowering {
         })
     }
 
-    /// Gives a parameter its value; where it is an offset in force, the offset follows.
+    /// Gives a parameter its value.
     pub(crate) fn set_parameter(&mut self, assignment: &Assignment) -> Result<(), Fault> {
         let value = assignment.value;
         let outcome = match &assignment.parameter {
             Parameter::Numbered(number) => {
-                let outcome = self.parameters.set(*number, value);
-                if OFFSETS.contains(number) {
-                    self.offsets.take_system(&self.parameters);
-                    self.program = self.offsets.in_program(self.position);
-                }
-                outcome
+                // Offsets count from when their system is selected, as for LinuxCNC.
+                self.parameters.set(*number, value)
             }
             Parameter::Named(name) if self.predefined(name).is_some() => {
                 let name = name.clone();

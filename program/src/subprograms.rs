@@ -22,22 +22,18 @@ pub(crate) const MOST_REPETITIONS: u32 = 99_999_999;
 /// The rest of a file, with the lines of each subprogram in it.
 #[derive(Debug)]
 pub(crate) struct Rest {
-    recording: Arc<Recording>,
+    pub(crate) recording: Arc<Recording>,
     programs: BTreeMap<u32, Range<usize>>,
 }
 
 impl<R: BufRead> Flow<R> {
     /// Calls a subprogram, as often as `times` says; false when it is not to run at all.
     pub(crate) fn call_program(&mut self, number: u32, times: u32) -> Result<bool, Reason> {
-        if self.rest.is_none() {
-            self.remember_rest()?;
-        }
-        let Some(rest) = &self.rest else {
-            return Ok(false);
-        };
+        let rest = self.rest()?;
         let Some(lines) = rest.programs.get(&number).cloned() else {
             return Err(FlowError::NoSubprogram { number }.into());
         };
+        let recording = Arc::clone(&rest.recording);
         if times == 0 {
             return Ok(false);
         }
@@ -46,7 +42,7 @@ impl<R: BufRead> Flow<R> {
             return Err(FlowError::TooDeep { bound }.into());
         }
         self.frames.push(Frame {
-            recording: Arc::clone(&rest.recording),
+            recording,
             next: lines.start,
             end: lines.end,
             open: Vec::new(),
@@ -85,8 +81,16 @@ impl<R: BufRead> Flow<R> {
         Ok(false)
     }
 
-    /// Reads the rest of the file, which goes on from memory.
-    fn remember_rest(&mut self) -> Result<(), Reason> {
+    /// The rest of the file, which goes on from memory once it was read.
+    pub(crate) fn rest(&mut self) -> Result<&Rest, Reason> {
+        let rest = match self.rest.take() {
+            Some(rest) => rest,
+            None => self.remember_rest()?,
+        };
+        Ok(self.rest.insert(rest))
+    }
+
+    fn remember_rest(&mut self) -> Result<Rest, Reason> {
         let here = self.here();
         let mut recording = Recording::new(&self.file, self.lines.count() + 1);
         let mut programs = BTreeMap::new();
@@ -119,10 +123,9 @@ impl<R: BufRead> Flow<R> {
                 call: Call::None,
             },
         );
-        self.rest = Some(Rest {
+        Ok(Rest {
             recording,
             programs,
-        });
-        Ok(())
+        })
     }
 }

@@ -9,14 +9,26 @@ use crate::error::{Fault, Notice, Remark};
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
 use crate::modal::{not_negative, whole};
+use crate::offsets::SYSTEMS;
 use crate::once::{COMPENSATED, companion, missing, missing_of};
 use crate::tools::{LARGEST_TOOL, Tool};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Move, Vector};
 
+/// What the words of a tool say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Measured {
+    /// Its offsets.
+    Given,
+    /// The coordinates that the tool has here, in the system in force.
+    Here,
+    /// The coordinates that the tool has here, in the last system and without a shift.
+    OnFixture,
+}
+
 impl Lowering {
-    /// `G10 L1` and `L10`.
-    pub(crate) fn set_tool(&mut self, block: &Block, by_position: bool) -> Result<(), Fault> {
+    /// `G10 L1`, `L10` and `L11`.
+    pub(crate) fn set_tool(&mut self, block: &Block, how: Measured) -> Result<(), Fault> {
         let Some(number) = whole(block, b'P', "tool number", 0, LARGEST_TOOL)? else {
             return Err(missing(block, 'P'));
         };
@@ -27,17 +39,38 @@ impl Lowering {
         if let Some(radius) = not_negative(block, b'R', "radius of the tool")? {
             tool.diameter = 2.0 * self.modal.units.length(radius);
         }
-        // Where the reference point of the machine is in the program.
-        let mut without = self.offsets;
-        without.set_tool(Vector::zeros());
-        let here = without.in_program(self.position);
-        for (axis, letter) in AXES.into_iter().enumerate() {
-            if let Some(length) = self.length(block, letter)? {
-                tool.offset[axis] = if by_position {
-                    here[axis] - length
-                } else {
-                    length
-                };
+        let written = |state: &Self| -> Result<[Option<f64>; 3], Fault> {
+            let mut lengths = [None; 3];
+            for (length, letter) in lengths.iter_mut().zip(AXES) {
+                *length = state.length(block, letter)?;
+            }
+            Ok(lengths)
+        };
+        let written = written(self)?;
+        let mut offset = tool.offset;
+        let mut turned = false;
+        match how {
+            Measured::Given => {
+                offset = Vector::from_fn(|axis, _| written[axis].unwrap_or(offset[axis]));
+            }
+            Measured::Here | Measured::OnFixture => {
+                let mut without = self.offsets;
+                if how == Measured::OnFixture {
+                    without = without.bare(SYSTEMS, &self.parameters);
+                }
+                // Where the point would be with the tool as it is now, but for what is written.
+                without.set_tool(tool.offset);
+                let here = without.in_program(self.position);
+                let target = Vector::from_fn(|axis, _| written[axis].unwrap_or(here[axis]));
+                without.set_tool(Vector::zeros());
+                offset = self.position - without.on_machine(target);
+                turned = without.rotation() != 0.0;
+            }
+        }
+        for axis in 0..3 {
+            // In a turned system both X and Y of the tool follow from either word.
+            if written[axis].is_some() || turned && axis < 2 {
+                tool.offset[axis] = offset[axis];
             }
         }
         self.tools.set(number, tool);
@@ -75,10 +108,21 @@ impl Lowering {
                 offset
             }
             ToolLength::Added if block.has(b'H') => {
+                if block.first_of(&AXES).is_some() {
+                    let state = "with both an H word and axis words";
+                    return Self::not_now(block, Group::ToolLength, state).map_or(Ok(()), Err);
+                }
                 let more = self
                     .tool_of(block, b'H', Group::ToolLength, remarks)?
                     .offset;
                 self.offsets.tool() + more
+            }
+            ToolLength::Added if block.first_of(&AXES).is_none() => {
+                return Err(companion(
+                    block,
+                    Group::ToolLength,
+                    "an H word or an axis word",
+                ));
             }
             ToolLength::Added => self.offsets.tool() + given(self)?,
         };

@@ -40,8 +40,7 @@ fn taker_of_axes(block: &Block) -> Option<Code> {
         _ => None,
     };
     let length = match block.tool_length {
-        Some(ToolLength::Given) => block.taker(Group::ToolLength),
-        Some(ToolLength::Added) if !block.has(b'H') => block.taker(Group::ToolLength),
+        Some(ToolLength::Given | ToolLength::Added) => block.taker(Group::ToolLength),
         _ => None,
     };
     once.or(length).map(|(code, _)| code)
@@ -152,7 +151,7 @@ fn users(block: &Block, motion: Option<Motion>, letter: u8) -> impl Iterator<Ite
         Some(ToolLength::Table | ToolLength::Added) => group(Group::ToolLength, b"H"),
         _ => None,
     };
-    let outside = group(Group::Outside, b"PQLE");
+    let outside = group(Group::Outside, b"PQLER").or(group(Group::Overrides, b"P"));
     let subprogram = match block.subprogram {
         Some(Subprogram::Call) => group(Group::Stop, b"PL"),
         _ => None,

@@ -204,13 +204,13 @@ fn wrong_o_words_are_refused_at_their_place() {
         ),
         (
             "o<no> call",
-            "1:1: there is no subroutine O<no>: neither above this line nor in a file of that name",
+            "1:1: there is no subroutine O<no>: neither in this program nor in a file of that name",
         ),
         ("o1 if", "1:1: IF needs an expression in brackets after it"),
         ("o1 return", "1:1: RETURN of O1 without its SUB"),
         (
-            "o1 repeat [-1]\no1 endrepeat",
-            "1:1: repetitions are -1, but must be from 0 to 1000000000000000",
+            "o1 repeat [2**60]\no1 endrepeat",
+            "1:1: repetitions are 1152921504606847000, but may be 1000000000000000 at most",
         ),
         (
             "o1 break",
@@ -293,4 +293,33 @@ fn wrong_expressions_are_refused_at_their_place() {
 #[test]
 fn a_program_number_is_no_o_word() {
     assert_ends("O1234 (PART)\nG0 X1", &[[1.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn a_subroutine_may_stand_below_its_call() {
+    let text = "G0 X1\no1 call [3]\no2 call\nX9\nM2\no1 sub\nX#1\no2 call\no1 endsub\n\
+                o2 sub\nX[#1+7]\no2 endsub\n";
+    assert_x(text, &[1.0, 3.0, 7.0, 7.0, 9.0]);
+    assert_x("o1 call\no1 sub\nG0 X5\no1 endsub\no1 call\n", &[5.0, 5.0]);
+}
+
+#[test]
+fn a_subroutine_has_one_definition() {
+    let text = "o1 sub\nG0 X1\no1 endsub\n\no1 sub\nG0 X2\no1 endsub\n";
+    let (line, _, word, reason) = refusal(text);
+    assert_eq!((line, word.as_str()), (5, "o1 sub"), "place");
+    let expected = "subroutine O1 was already defined in line 1";
+    assert_eq!(reason.to_string(), expected, "message");
+    let again = "o5 repeat [2]\no1 sub\nG0 X1\no1 endsub\no1 call\no5 endrepeat\n";
+    assert_x(again, &[1.0, 1.0]);
+}
+
+#[test]
+fn a_negative_number_of_repetitions_is_none() {
+    assert_x("o1 repeat [-2]\nG0 X1\no1 endrepeat\nG0 X2", &[2.0]);
+}
+
+#[test]
+fn the_number_of_a_line_is_that_of_the_line_being_read() {
+    assert_x("G0 X#<_line>\n\nX#<_line>", &[1.0, 3.0]);
 }

@@ -610,3 +610,30 @@ fn what_follows_from_a_refusal_is_told_apart() {
         assert_eq!(all_refusals(text), expected, "{text:?}");
     }
 }
+
+#[test]
+fn half_of_a_pair_of_words_is_refused() {
+    for (text, column, word) in [
+        ("F9 G5 X2 I1 P1 Q1", 4, "G5"),
+        ("G43.2", 1, "G43.2"),
+        ("G43.2 H1 Z1", 1, "G43.2"),
+        ("G91 G0 @5 ^30", 8, "@5"),
+    ] {
+        let (_, found, met, reason) = refusal(text);
+        assert_eq!((found, met.as_str()), (column, word), "{text:?}: {reason}");
+    }
+}
+
+#[test]
+fn words_of_spindle_and_overrides_have_their_uses() {
+    for text in [
+        "M19 R90 P1",
+        "M50 P1",
+        "M51 P0",
+        "M52 P1",
+        "M53 P1",
+        "G10 L0",
+    ] {
+        assert_eq!(common::read(text), [], "{text:?}");
+    }
+}

@@ -58,7 +58,9 @@ fn coordinate_systems_move_and_turn_the_program() {
         "G0 X7\nG10 L20 P1 X2\nX3",
         &[[7.0, 0.0, 0.0], [8.0, 0.0, 0.0]],
     );
-    assert_ends("#5221=4\nG0 X1", &[[5.0, 0.0, 0.0]]);
+    let later = "#5221=4\nG0 X1\nG54 X2\nG55 X3\nG54 X1";
+    let xs = [1.0, 2.0, 3.0, 5.0];
+    assert_ends(later, &xs.map(|x| [x, 0.0, 0.0]));
 }
 
 #[test]
@@ -82,10 +84,53 @@ fn arcs_follow_offsets_and_rotation() {
         (arc.end() - Vector::<3>::new(10.0, -5.0, 0.0)).norm() < CLOSE,
         "end"
     );
-    let (.., reason) = refused("G10 L2 P1 R10\nG18 G2 X1 I1 F60");
-    assert!(
-        matches!(reason, Reason::Machining(MachiningError::RotatedArc { .. })),
-        "{reason}"
+}
+
+#[test]
+fn an_upright_arc_in_a_turned_system_becomes_chords_in_its_turned_plane() {
+    let found = common::ends("G10 L2 P1 R30\nG0 X5\nG18 G2 X-5 I-5 K0 F60\n");
+    assert!(found.len() > 20, "{} moves", found.len());
+    let (sine, cosine) = 30.0_f64.to_radians().sin_cos();
+    for [x, y, z] in found {
+        assert!((x * sine - y * cosine).abs() < CLOSE, "in the plane");
+        assert!(
+            ((x * x + y * y + z * z).sqrt() - 5.0).abs() < CLOSE,
+            "on the circle"
+        );
+    }
+}
+
+#[test]
+fn origins_and_tools_measured_in_a_turned_system_give_the_coordinates_that_were_asked_for() {
+    let text =
+        "G10 L2 P1 R30 X3 Y1\nG0 X5 Y6\nG10 L20 P1 X1\nG0 X1 Y6\nX7 Y7\nG10 L20 P1 Y-2\nX7 Y-2";
+    let found = common::ends(text);
+    assert_close(&found[0], &found[1], "X alone");
+    assert_close(&found[2], &found[3], "Y alone");
+    let tool = "G10 L2 P1 R45\nG0 X1 Y1\nG10 L10 P1 X5\nT1 M6 G43\nX5 Y1";
+    let found = common::ends(tool);
+    assert_close(&found[0], &found[1], "tool");
+    let (.., reason) = refused("G10 L20 P1 R30 X1");
+    assert_eq!(reason, Reason::Unused { letter: 'R' }, "no rotation");
+}
+
+#[test]
+fn a_tool_measured_on_the_fixture_knows_no_other_offsets() {
+    let text = "G10 L2 P9 Z7\nG0 Z20\nG92 Z1\nG10 L11 P1 Z5\nG92.1\nT1 M6 G43 G59.3\nG10 L0\nZ5";
+    assert_ends(text, &[[0.0, 0.0, 20.0], [0.0, 0.0, 20.0]]);
+}
+
+#[test]
+fn stored_points_are_reached_along_the_axes_of_the_program() {
+    let text = "G10 L2 P1 X10 R90\nG0 X5 Y1\nG28.1\nX0\nG28 X2";
+    assert_ends(
+        text,
+        &[
+            [9.0, 5.0, 0.0],
+            [9.0, 0.0, 0.0],
+            [9.0, 2.0, 0.0],
+            [9.0, 5.0, 0.0],
+        ],
     );
 }
 

@@ -241,8 +241,17 @@ def main():
     if len(arguments) < 2:
         sys.exit(__doc__)
     load_tools(table)
-    outcomes = [compare(program, arguments[0], table) for program in arguments[1:]]
-    sys.exit(0 if all(outcomes) else 1)
+    sys.stdout.flush()
+    failed = False
+    for program in arguments[1:]:
+        # The interpreter keeps tool and offsets, so each program has one of its own.
+        child = os.fork()
+        if child == 0:
+            same = compare(program, arguments[0], table)
+            sys.stdout.flush()
+            os._exit(0 if same else 1)
+        failed |= os.waitpid(child, 0)[1] != 0
+    sys.exit(1 if failed else 0)
 
 
 main()
