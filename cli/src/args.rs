@@ -111,6 +111,9 @@ pub(crate) struct PoseArgs {
     /// Largest rate at which the tool turns, rad/s [default: what the axes allow].
     #[arg(long, value_name = "RAD/S", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) turn_rate: Option<f64>,
+    /// Axis to turn about between tool orientations that point opposite ways, in workpiece coordinates.
+    #[arg(long, value_name = "I,J,K", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) turn_about: Option<PerAxis>,
     /// Poses that ns-jcb puts between those of the program, on every move.
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     pub(crate) way_points: u32,
@@ -249,6 +252,9 @@ pub(crate) struct VerifyArgs {
     /// How far the tool may turn away from its path, rad; for machines with rotary axes.
     #[arg(long, value_name = "RAD", value_parser = positive, allow_hyphen_values = true, default_value_t = 0.001)]
     pub(crate) orientation_tolerance: f64,
+    /// Axis to turn about between tool orientations that point opposite ways, in workpiece coordinates.
+    #[arg(long, value_name = "I,J,K", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) turn_about: Option<PerAxis>,
     /// Set-points to judge: CSV with the columns t_s, x_mm, y_mm, z_mm.
     #[arg(value_name = "SETPOINTS.csv")]
     pub(crate) set_points: PathBuf,

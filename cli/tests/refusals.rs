@@ -309,3 +309,23 @@ fn filters_that_no_motion_can_pass() {
         );
     }
 }
+
+#[test]
+fn tool_poses_that_point_opposite_ways_and_no_axis_between_them() {
+    let folder = Folder::new();
+    let poses = "FEDRAT/3000,MMPM\nGOTO/0,0,0,0.6,0,0.8\nGOTO/10,0,0,-0.6,0,-0.8\n";
+    let program = folder.write("around.apt", poses);
+    let on = ["--machine", "head-bc"];
+    for (more, reason) in [
+        (
+            &[][..],
+            ":3: move 1: from orientation [0.600000, 0.000000, 0.800000] to orientation",
+        ),
+        (&["--turn-about", "0,1"], "an axis is I,J,K"),
+        (&["--turn-about", "0.6,0,0.8"], ":3: move 1: "),
+        // With an axis it is the machine that cannot point below its table.
+        (&["--turn-about", "0,1,0"], ":3: move 1: axis Z"),
+    ] {
+        refused(&folder, &program, &[&on[..], more].concat(), reason);
+    }
+}

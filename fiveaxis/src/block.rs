@@ -5,21 +5,6 @@
 
 use toolglide_kinematics::{GreatCircle, PoseFeed, PoseLeg, PosePath, Vector};
 
-/// Angle of the tool between two positions of the axes along a block, rad, and length of the tip, mm.
-const SHARE_ANGLE: f64 = 0.05;
-const SHARE_LENGTH: f64 = 5.0;
-
-/// Fewest and most shares of a block.
-const SHARES: [f64; 2] = [4.0, 48.0];
-
-/// Into how many shares a move is cut to follow it with the axes.
-pub(crate) fn shares(length: f64, angle: f64) -> f64 {
-    (angle / SHARE_ANGLE)
-        .max(length / SHARE_LENGTH)
-        .ceil()
-        .clamp(SHARES[0], SHARES[1])
-}
-
 /// A line of the tip and a turn of the tool that take the same time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseBlock {

@@ -61,6 +61,39 @@ pub enum FiveAxisError {
         /// How much of it remains needed.
         factor: f64,
     },
+    /// The tool points along an axis that would have to jump.
+    #[error(
+        "move {index}: at its start the tool points along axis {axis}, which stands at {from} rad and must be at {to} rad for \
+         the tool to go on, {} rad away; tip {tip:.6?} mm, orientation {tool:.6?}",
+        (to - from).abs()
+    )]
+    Pole {
+        /// The move, counted from 0.
+        index: u32,
+        /// Letter of the axis.
+        axis: char,
+        /// Where the axis stands, rad.
+        from: f64,
+        /// Where it must be, rad.
+        to: f64,
+        /// Tool tip, mm.
+        tip: [f64; 3],
+        /// Tool orientation.
+        tool: [f64; 3],
+    },
+    /// Two orientations in a row point opposite ways.
+    #[error(
+        "move {index}: from orientation {from:.6?} to orientation {to:.6?} the tool turns around, about an axis that is open; give a \
+         pose between them, or the axis"
+    )]
+    Opposite {
+        /// The move, counted from 0.
+        index: u32,
+        /// Orientation before.
+        from: [f64; 3],
+        /// Orientation after.
+        to: [f64; 3],
+    },
     /// A turn of the tool alone needs a rate.
     #[error(
         "move {index}: the tool turns without a way of its tip, so a rate or a duration must be given"
@@ -87,6 +120,8 @@ impl FiveAxisError {
             | Self::Machine { index, .. }
             | Self::NoAxis { index, .. }
             | Self::AxisLimit { index, .. }
+            | Self::Pole { index, .. }
+            | Self::Opposite { index, .. }
             | Self::NoRate { index }
             | Self::Finished { index } => Some(*index),
         }

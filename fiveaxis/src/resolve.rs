@@ -4,18 +4,20 @@
 //! forward kinematics turns into an orientation; plain mode gives positions of axes. Not here:
 //! reading programs.
 
-use crate::block::shares;
+use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
+use crate::pole::Spin;
 use toolglide_kinematics::numeric::SAME_ORIENTATION;
 use toolglide_kinematics::{
-    AxisKind, AxisVector, KinematicsError, MachineKinematics, OrientationTolerance, PoseEnd,
-    PoseFeed, PoseLeg, PoseMove, PosePath, ToolPose, Vector,
+    AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,
+    PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath, ToolPose, ToolpathError, Vector,
 };
 
 /// Turns moves into legs, one after the other.
 pub struct Resolver<'m> {
     machine: &'m dyn MachineKinematics,
     orientation_tolerance: OrientationTolerance,
+    about: Option<Vector<3>>,
     at: AxisVector,
     pose: ToolPose,
     count: u32,
@@ -46,10 +48,19 @@ impl<'m> Resolver<'m> {
         Ok(Self {
             machine,
             orientation_tolerance,
+            about: None,
             at: start,
             pose,
             count: 0,
         })
+    }
+
+    /// The same, turning about `axis`, in workpiece coordinates, between orientations that point opposite
+    /// ways.
+    #[must_use]
+    pub fn turning_about(mut self, axis: Vector<3>) -> Self {
+        self.about = Some(axis);
+        self
     }
 
     /// Where the path has come to.
@@ -82,6 +93,8 @@ impl<'m> Resolver<'m> {
         let (end, axes) = match *next.end() {
             PoseEnd::Dwell { duration } => return Ok(leg(PosePath::Dwell { duration })),
             PoseEnd::Pose(pose) => {
+                // What is wrong with the move itself comes before what the machine says.
+                self.turn(index, &pose)?;
                 let axes = self.machine.inverse(&pose, &self.at).map_err(machine)?;
                 (pose, axes)
             }
@@ -119,20 +132,44 @@ impl<'m> Resolver<'m> {
             }
             _ => return Err(FiveAxisError::NoRate { index }),
         };
-        let mut made = PoseLeg::between(
-            &self.pose,
-            &end,
-            next.feed(),
-            next.tolerance(),
-            self.orientation_tolerance,
-        )
-        .map_err(path)?;
-        made.stop = next.stops();
-        made.line = next.line();
-        let follow = self.follow(&made).map_err(machine)?;
-        self.at = follow.unwrap_or(axes);
+        let made = leg(PosePath::Tool {
+            tip: [self.pose.tip(), end.tip()],
+            turn: self.turn(index, &end)?,
+        });
+        match self.follow(index, &made) {
+            Ok(at) => self.at = at.unwrap_or(axes),
+            // A rapid may take the axes another way round when theirs has come to its end.
+            Err(FiveAxisError::Machine {
+                reason: KinematicsError::Travel { .. },
+                ..
+            }) if next.feed() == PoseFeed::Rapid => {
+                let start = std::mem::replace(&mut self.at, axes);
+                self.pose = end;
+                return Ok(leg(PosePath::Axes { start, end: axes }));
+            }
+            Err(refused) => return Err(refused),
+        }
         self.pose = end;
         Ok(made)
+    }
+
+    /// The turn of the tool to a pose.
+    fn turn(&self, index: u32, end: &ToolPose) -> Result<GreatCircle, FiveAxisError> {
+        GreatCircle::between(&self.pose, end)
+            .or_else(|reason| match (reason, &self.about) {
+                (ToolpathError::Opposite { .. }, Some(axis)) => {
+                    GreatCircle::about(&self.pose, end, axis)
+                }
+                (reason, _) => Err(reason),
+            })
+            .map_err(|reason| match reason {
+                ToolpathError::Opposite { .. } => FiveAxisError::Opposite {
+                    index,
+                    from: self.pose.orientation().into(),
+                    to: end.orientation().into(),
+                },
+                reason => FiveAxisError::Path { index, reason },
+            })
     }
 
     /// Whether a rotary axis has to turn to be at `end`.
@@ -146,23 +183,12 @@ impl<'m> Resolver<'m> {
             })
     }
 
-    /// Where the axes come to when they follow a leg without a jump.
-    fn follow(&self, leg: &PoseLeg) -> Result<Option<AxisVector>, KinematicsError> {
-        let PosePath::Tool { tip, turn } = &leg.path else {
+    /// Where the axes come to when they follow a leg without a jump; `None` for a leg that leads nowhere.
+    fn follow(&self, index: u32, leg: &PoseLeg) -> Result<Option<AxisVector>, FiveAxisError> {
+        let Some(block) = PoseBlock::of(leg, index, f64::INFINITY) else {
             return Ok(None);
         };
-        let shares = shares(leg.length(), turn.angle());
-        let mut near = self.at;
-        let mut step = 0.0;
-        while step <= shares {
-            let share = step / shares;
-            let Ok(pose) = ToolPose::new(tip[0] + (tip[1] - tip[0]) * share, turn.at(share)) else {
-                return Ok(None);
-            };
-            near = self.machine.inverse(&pose, &near)?;
-            step += 1.0;
-        }
-        Ok(Some(near))
+        Spin::arrival(&block, self.machine, &self.at).map(Some)
     }
 
     /// Axis positions by words: those of linear axes as they are where none are given.

@@ -43,6 +43,46 @@ fn moves_past_the_pole_at_any_distance_keep_every_limit() {
     }
 }
 
+const METHODS: [PoseMethod; 3] = [
+    PoseMethod::DwellControlled,
+    PoseMethod::VelocityControlled,
+    PoseMethod::PointToPoint,
+];
+
+#[test]
+fn a_path_that_starts_or_turns_at_the_pole_rests_there_while_one_axis_turns() {
+    let rows = [
+        leaning([0.0, 0.0, 0.0], [0.0, 0.0]),
+        leaning([10.0, 0.0, 0.0], [0.15, 0.1]),
+        leaning([20.0, 5.0, 0.0], [0.0, 0.0]),
+        leaning([30.0, 5.0, 2.0], [-0.1, 0.2]),
+        leaning([30.0, 9.0, 2.0], [0.0, 0.0]),
+        leaning([25.0, 9.0, 2.0], [0.1, -0.2]),
+    ];
+    for name in ["table-ac", "table-bc", "head-bc", "head-table-bc"] {
+        let model = find(name).unwrap();
+        let mut config = (model.preset)();
+        for axis in &mut config.axis {
+            axis.travel = None;
+        }
+        let machine = (model.build)(&config).unwrap();
+        let axes = machine.axes().to_vec();
+        let start = start_of(machine.as_ref(), &rows[0]);
+        let legs = legs(&rows, 50.0, 0.05, 0.001);
+        for method in METHODS {
+            let settings = settings([0.05, 0.025], method);
+            let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
+            let report = judge(machine.as_ref(), &axes, &legs, &planned);
+            assert!(report.passes(), "{name} {method:?}: {:#?}", report.examples);
+            assert!(
+                report.cycle_time < 8.0,
+                "{name} {method:?}: {} s",
+                report.cycle_time
+            );
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
@@ -63,11 +103,7 @@ proptest! {
         let (machine, axes) = table_ac();
         let start = start_of(machine.as_ref(), &rows[0]);
         let legs = legs(&rows, speed, tip, orientation);
-        for method in [
-            PoseMethod::DwellControlled,
-            PoseMethod::VelocityControlled,
-            PoseMethod::PointToPoint,
-        ] {
+        for method in METHODS {
             let settings = settings([0.05, 0.025], method);
             let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
             let report = judge(machine.as_ref(), &axes, &legs, &planned);

@@ -103,6 +103,22 @@ impl GreatCircle {
         })
     }
 
+    /// The turn by an angle of at most half a turn, rad, about any unit axis, from `start` to
+    /// `end`, where it is known to lead.
+    ///
+    /// Where the axis is not across the orientation this is no great circle, but a parallel of the sphere
+    /// about its axis: not the shortest way, but one that a machine can turn with one axis. A negative
+    /// angle turns the other way.
+    #[must_use]
+    pub fn along_parallel(start: &ToolPose, end: &ToolPose, axis: &Vector<3>, angle: f64) -> Self {
+        Self {
+            start: start.orientation(),
+            end: end.orientation(),
+            axis: axis * 1.0_f64.copysign(angle),
+            angle: angle.abs(),
+        }
+    }
+
     /// Orientation before the turn, of unit length.
     #[must_use]
     pub fn start(&self) -> Vector<3> {

@@ -26,7 +26,13 @@ pub(crate) fn verify(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
-    let inputs = Inputs::new(&args.job, None, args.orientation_tolerance, None)?;
+    let inputs = Inputs::new(
+        &args.job,
+        None,
+        args.orientation_tolerance,
+        args.turn_about.as_ref(),
+        None,
+    )?;
     match inputs.setup.axes.len() {
         2 => judge::<2>(args, &inputs, out, err),
         3 => judge::<3>(args, &inputs, out, err),

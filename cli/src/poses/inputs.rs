@@ -7,14 +7,15 @@ use crate::error::CliError;
 use crate::filters;
 use crate::setup::{Setup, is_straight, machine};
 use crate::source::{Source, language, subroutines};
+use crate::values::PerAxis;
 use std::collections::VecDeque;
 use std::io::BufRead;
 
 use toolglide_fir::FilterChain;
-use toolglide_fiveaxis::{FiveAxisError, Resolver};
+use toolglide_fiveaxis::{FiveAxisError, Resolver, start_of};
 use toolglide_kinematics::{
-    AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,
-    PoseEnd, PoseLeg, PoseMove, ToolPose,
+    AxisKind, AxisVector, KinematicsError, MachineKinematics, OrientationTolerance, PoseEnd,
+    PoseLeg, PoseMove, Vector,
 };
 use toolglide_program::{Language, Poses, Settings};
 
@@ -24,8 +25,8 @@ const DECIMALS: f64 = 1e6;
 /// The first filter is longer than the second by this factor where nobody says otherwise.
 const FIRST_TO_SECOND: f64 = 2.0;
 
-/// How far towards the second pose the way on is looked for, as a share.
-const BEYOND: f64 = 1e-3;
+/// Moves that are looked at to choose on which branch and turn a machine starts.
+const MOVES_AHEAD: usize = 1 << 14;
 
 /// Whether a run is one of tool poses: the machine has other axes than straight X, Y and Z, or the
 /// program is a file of tool poses.
@@ -40,6 +41,8 @@ pub(crate) struct Inputs {
     pub(crate) setup: Setup,
     pub(crate) machine: Box<dyn MachineKinematics>,
     pub(crate) orientation_tolerance: OrientationTolerance,
+    /// Axis to turn about between opposite orientations.
+    turn_about: Option<Vector<3>>,
     /// Whether the command line says where the motion starts.
     started: bool,
 }
@@ -49,6 +52,7 @@ impl Inputs {
         job: &JobArgs,
         tip_tolerance: Option<f64>,
         orientation_tolerance: f64,
+        turn_about: Option<&PerAxis>,
         period: Option<f64>,
     ) -> Result<Self, CliError> {
         let (config, machine) = machine(&job.machine)?;
@@ -71,10 +75,22 @@ impl Inputs {
                     bound: reason.to_string(),
                 }
             })?;
+        let turn_about = turn_about
+            .map(|PerAxis(values)| {
+                <[f64; 3]>::try_from(values.as_slice())
+                    .map(Vector::<3>::from)
+                    .map_err(|_| CliError::Option {
+                        option: "--turn-about",
+                        value: format!("{} numbers", values.len()),
+                        bound: "an axis is I,J,K".to_owned(),
+                    })
+            })
+            .transpose()?;
         Ok(Self {
             setup,
             machine,
             orientation_tolerance,
+            turn_about,
             started: job.start.is_some(),
         })
     }
@@ -124,6 +140,7 @@ impl Inputs {
             resolver: None,
             machine: self.machine.as_ref(),
             orientation_tolerance: self.orientation_tolerance,
+            turn_about: self.turn_about,
             name,
             start,
             ahead: VecDeque::new(),
@@ -144,41 +161,31 @@ pub(crate) struct Legs<'m> {
     resolver: Option<Resolver<'m>>,
     machine: &'m dyn MachineKinematics,
     orientation_tolerance: OrientationTolerance,
+    turn_about: Option<Vector<3>>,
     ahead: VecDeque<PoseMove>,
 }
 
 impl Legs<'_> {
     /// A file of tool poses does not say how the tool gets to the first.
     fn start_at_first_pose(&mut self) -> Result<(), CliError> {
-        for _ in 0..2 {
-            let next = self.read()?;
-            self.ahead.extend(next);
+        while self.ahead.len() < MOVES_AHEAD {
+            let Some(next) = self.read()? else { break };
+            let pose = matches!(next.end(), PoseEnd::Pose(_));
+            self.ahead.push_back(next);
+            if !pose && self.ahead.len() == 1 {
+                return Ok(());
+            }
         }
-        let pose = |at: usize| match self.ahead.get(at).map(|next| (next.end(), next.line())) {
-            Some((PoseEnd::Pose(pose), line)) => Some((*pose, line)),
-            _ => None,
-        };
-        let Some((first, line)) = pose(0) else {
+        let Some(first) = self.ahead.front() else {
             return Ok(());
         };
-        let inverse = |pose: &ToolPose, near: &AxisVector| {
-            self.machine.inverse(pose, near).map_err(|reason| {
-                refused(
-                    &self.name,
-                    line,
-                    FiveAxisError::Machine { index: 0, reason },
-                )
-            })
-        };
-        let mut start = inverse(&first, &self.start)?;
-        // At a pole an axis may stand anywhere: it stands where the way on begins.
-        if let Some((second, _)) = pose(1)
-            && let Ok(turn) = GreatCircle::between(&first, &second)
-            && let Ok(beyond) = ToolPose::new(first.tip(), turn.at(BEYOND))
-        {
-            start = inverse(&first, &inverse(&beyond, &start)?)?;
-        }
-        self.start = start;
+        let line = first.line();
+        self.start = start_of(self.machine, self.ahead.make_contiguous(), &self.start).map_err(
+            |reason| {
+                let reason = FiveAxisError::Machine { index: 0, reason };
+                refused(&self.name, line, reason)
+            },
+        )?;
         Ok(())
     }
 
@@ -201,7 +208,10 @@ impl Legs<'_> {
         if self.resolver.is_none() {
             let resolver = Resolver::new(self.machine, self.start, self.orientation_tolerance)
                 .map_err(|reason| refused(&self.name, next.line(), reason))?;
-            self.resolver = Some(resolver);
+            self.resolver = Some(match self.turn_about {
+                Some(axis) => resolver.turning_about(axis),
+                None => resolver,
+            });
         }
         let leg = match &mut self.resolver {
             Some(resolver) => resolver.leg(&next),
@@ -240,6 +250,20 @@ pub(crate) fn refused(program: &str, line: u32, reason: FiveAxisError) -> CliErr
             let beyond = degrees((low - position).max(position - high).to_radians());
             format!(
                 "move {index}: axis {axis}: position {position} is outside the travel {low} to {high} deg by {beyond}"
+            )
+        }
+        FiveAxisError::Pole {
+            index,
+            axis,
+            from,
+            to,
+            tip,
+            tool,
+        } => {
+            let [from, to] = [from, to].map(degrees);
+            let away = degrees((to - from).abs().to_radians());
+            format!(
+                "move {index}: at its start the tool points along axis {axis}, which stands at {from} deg and must be at {to} deg for the tool to go on, {away} deg away; tip {tip:.6?} mm, orientation {tool:.6?}"
             )
         }
         other => other.to_string(),

@@ -52,6 +52,7 @@ pub(crate) fn plan(
         &args.job,
         args.poses.tip_tolerance,
         args.poses.orientation_tolerance,
+        args.poses.turn_about.as_ref(),
         args.period,
     )?;
     let chain = inputs.chain(&args.tuning)?;

@@ -1,0 +1,165 @@
+//! Turns in place where an axis does not matter to the tool: at the pole of a machine.
+//!
+//! Source: ours. A move that leaves a pole in another direction than it was entered needs one axis
+//! to stand elsewhere at once. The motion rests there, the tool leans by a small share of its tolerance,
+//! the axis turns while the tip stands still in the workpiece, and the tool goes upright again. Not here:
+//! moves that pass a pole at a distance.
+
+use crate::block::PoseBlock;
+use crate::error::FiveAxisError;
+use crate::way::Way;
+use toolglide_kinematics::{
+    Axis, AxisKind, AxisVector, GreatCircle, MachineKinematics, ToolPose, Vector, turned,
+};
+
+/// Angle by which a block has left a pole where it is asked for the axes, rad: far enough for the
+/// rounding of orientations, near enough for every direction to be that of the start.
+const PROBE: f64 = 1e-5;
+
+/// Axes that differ by less stand at the same place, rad.
+const SAME_PLACE: f64 = 1e-8;
+
+/// How far the tool leans while an axis turns, as a share of its tolerance; and at most, rad.
+const LEAN: f64 = 0.2;
+const MOST_LEAN: f64 = 1e-3;
+
+/// Orientations found in two ways differ by less than this, rad.
+const AGREES: f64 = 1e-9;
+
+/// An axis that must turn at rest, because the tool does not tell where it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spin {
+    /// Number of the axis.
+    axis: usize,
+    from: AxisVector,
+    to: AxisVector,
+    /// Axis positions when the block has left the pole.
+    beyond: AxisVector,
+}
+
+impl Spin {
+    /// The way along a block where it goes on from axis positions `at`; or the turn that it needs
+    /// before.
+    pub(crate) fn before(
+        block: &PoseBlock,
+        machine: &dyn MachineKinematics,
+        at: &AxisVector,
+    ) -> Result<(Option<Way>, Option<Self>), FiveAxisError> {
+        let way = Way::along(block, machine, at);
+        match way {
+            Ok(way) if way.known().is_some() => return Ok((Some(way), None)),
+            _ if block.turn.angle() < PROBE => return way.map(|way| (Some(way), None)),
+            _ => {}
+        }
+        let refused = |reason| FiveAxisError::Machine {
+            index: block.leg,
+            reason,
+        };
+        let start = block.pose(0.0)?;
+        let from = machine.follow(&start, at).map_err(refused)?;
+        let leaving = block.pose(PROBE / block.turn.angle())?;
+        let beyond = machine.inverse(&leaving, &from).map_err(refused)?;
+        let to = machine.inverse(&start, &beyond).map_err(refused)?;
+        let axes = machine.axes();
+        let moved = |axis: &usize| {
+            axes[*axis].kind == AxisKind::Rotary && (to[*axis] - from[*axis]).abs() > SAME_PLACE
+        };
+        let mut turning = (0..axes.len()).filter(moved);
+        let Some(axis) = turning.next() else {
+            return way.map(|way| (Some(way), None));
+        };
+        let spin = Self {
+            axis,
+            from,
+            to,
+            beyond,
+        };
+        if turning.next().is_some() {
+            return Err(spin.refused(block, axes));
+        }
+        Ok((None, Some(spin)))
+    }
+
+    /// Where the axes come to along a block from axis positions `at`.
+    pub(crate) fn arrival(
+        block: &PoseBlock,
+        machine: &dyn MachineKinematics,
+        at: &AxisVector,
+    ) -> Result<AxisVector, FiveAxisError> {
+        let way = match Self::before(block, machine, at)? {
+            (Some(way), _) => way,
+            (None, spin) => Way::along(block, machine, spin.as_ref().map_or(at, |spin| &spin.to))?,
+        };
+        Ok(*way.last())
+    }
+
+    fn refused(&self, block: &PoseBlock, axes: &[Axis]) -> FiveAxisError {
+        let (tip, tool) = (block.start, block.turn.start());
+        FiveAxisError::Pole {
+            index: block.leg,
+            axis: axes[self.axis].name,
+            from: self.from[self.axis],
+            to: self.to[self.axis],
+            tip: tip.into(),
+            tool: tool.into(),
+        }
+    }
+
+    /// The moves of the turn before a block: leaning, turning, and upright again.
+    pub(crate) fn blocks(
+        &self,
+        block: &PoseBlock,
+        machine: &dyn MachineKinematics,
+    ) -> Result<[PoseBlock; 3], FiveAxisError> {
+        let axes = machine.axes();
+        let refused = || self.refused(block, axes);
+        let lean = (LEAN * block.orientation_tolerance).min(MOST_LEAN);
+        let upright = block.turn.start();
+        let tool = |axes: &AxisVector| {
+            machine
+                .forward(axes)
+                .map(|pose| pose.orientation())
+                .map_err(|_| refused())
+        };
+        // The axis that leans the tool is the one that has moved beyond the pole.
+        let tilt = (0..axes.len())
+            .filter(|axis| axes[*axis].kind == AxisKind::Rotary && *axis != self.axis)
+            .max_by(|one, other| {
+                let gone = |axis: usize| (self.beyond[axis] - self.to[axis]).abs();
+                gone(*one).total_cmp(&gone(*other))
+            })
+            .ok_or_else(refused)?;
+        let leaning = |at: &AxisVector| {
+            let mut at = *at;
+            at[tilt] += lean.copysign(self.beyond[tilt] - self.to[tilt]);
+            tool(&at)
+        };
+        let (first, last) = (leaning(&self.from)?, leaning(&self.to)?);
+        let angle = self.to[self.axis] - self.from[self.axis];
+        let sense = [angle, -angle]
+            .into_iter()
+            .find(|angle| (turned(&first, &upright, *angle) - last).norm() < AGREES)
+            .ok_or_else(refused)?;
+        let pose = |orientation: Vector<3>| ToolPose::new(block.start, orientation);
+        let made = |turn| PoseBlock {
+            end: block.start,
+            length: 0.0,
+            duration: 0.0,
+            turn,
+            ..*block
+        };
+        let circles = || {
+            Ok([
+                GreatCircle::between(&pose(upright)?, &pose(first)?)?,
+                GreatCircle::along_parallel(&pose(first)?, &pose(last)?, &upright, sense),
+                GreatCircle::between(&pose(last)?, &pose(upright)?)?,
+            ])
+        };
+        circles()
+            .map(|circles| circles.map(made))
+            .map_err(|reason| FiveAxisError::Path {
+                index: block.leg,
+                reason,
+            })
+    }
+}
