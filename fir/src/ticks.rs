@@ -441,7 +441,7 @@ mod tests {
         );
         assert!(
             matches!(
-                TickFilter::new(&chain(&[1e6]), period(), [0]),
+                TickFilter::new(&chain(&[5.0]), SamplePeriod::new(1e-6).unwrap(), [0]),
                 Err(FirError::TooManyTicks { .. })
             ),
             "too long"
