@@ -77,7 +77,7 @@ impl Windows {
         if self.stretches_by_kcs > 0 {
             let _ = write!(
                 text,
-                "; {} of {} stretches between stops are faster by kcs",
+                "; {} of {} stretches are faster by kcs",
                 self.stretches_by_kcs, self.stretches
             );
         }

@@ -41,7 +41,8 @@ pub struct WindowTally {
     pub retried: u64,
     /// Those that kept the plan before, with its stop.
     pub kept: u64,
-    /// Stretches between stops.
+    /// Stretches between places where one motion may take the place of another: stops, and the middle of
+    /// long moves.
     pub stretches: u64,
     /// Those that are travelled by another method, which is faster there.
     pub yielded: u64,

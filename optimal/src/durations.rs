@@ -29,7 +29,7 @@ const RESTORED_TRUST: f64 = 0.02;
 /// A predicted gain below this share of the duration is not worth another problem.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// Excess that counts as none: the caller leaves a margin of four times that.
+/// Excess that counts as none: the caller leaves a margin of twice that.
 const ENOUGH: f64 = 1e-4;
 
 /// Excess at which a restoration ends early.
@@ -145,6 +145,22 @@ impl<const N: usize> SequentialSolver<N> {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A solver with room for windows of so many segments and intervals: up to that it allocates
+    /// nothing.
+    #[must_use]
+    pub fn with_room(segments: usize, steps: usize) -> Self {
+        let mut solver = Self::default();
+        solver.problem.reserve(segments, steps);
+        solver.interior.reserve(segments, steps);
+        for base in [&mut solver.base, &mut solver.best] {
+            base.states.reserve(steps + 1);
+            base.jerks.reserve(steps);
+        }
+        solver.durations.reserve(segments);
+        solver.best_durations.reserve(segments);
+        solver
     }
 
     fn load(

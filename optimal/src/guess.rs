@@ -26,20 +26,26 @@ const LEAST_SPEED: f64 = 1e-3;
 /// above the lower speed: a change by jerk alone takes longer than the acceleration alone would say.
 const RISE_SPEED: f64 = 0.1;
 
-/// Speed of passing from one span to the next, mm/s, for the weakest axis.
-pub(crate) fn corner_speed<const N: usize>(
+/// How much faster than the feedrate a joint could be passed where passing it asks for little.
+const EASE: f64 = 2.0;
+
+/// Share of the feedrate above which speed counts as constant.
+const STEADY: f64 = 0.999;
+
+/// Speed at which the circle that fits a joint could be passed, mm/s, by the weakest axis; infinite
+/// where the path goes straight on.
+fn circle_speed<const N: usize>(
     span: &Span<N>,
     next: &Span<N>,
     (acceleration, jerk): (f64, f64),
 ) -> f64 {
-    let most = span.limits.velocity.min(next.limits.velocity);
     if span.goes_on {
-        return most;
+        return f64::INFINITY;
     }
     let cosine = span.direction.dot(&next.direction).clamp(-1.0, 1.0);
     let turn = cosine.acos();
     if turn < STRAIGHT {
-        return most;
+        return f64::INFINITY;
     }
     let half = 0.5 * turn;
     let between = if turn < REVERSAL {
@@ -54,7 +60,8 @@ pub(crate) fn corner_speed<const N: usize>(
     } else {
         between.min(inside)
     };
-    most.min((acceleration * radius).sqrt())
+    (acceleration * radius)
+        .sqrt()
         .min((jerk * radius * radius).cbrt())
 }
 
@@ -65,6 +72,8 @@ pub(crate) struct Guess {
     speeds: Vec<f64>,
     /// Duration of each span, s.
     pub(crate) times: Vec<f64>,
+    /// Whether each span is travelled at the feedrate and its joints ask for little.
+    pub(crate) steady: Vec<bool>,
 }
 
 impl Guess {
@@ -73,6 +82,7 @@ impl Guess {
         Self {
             speeds: Vec::with_capacity(most + 1),
             times: Vec::with_capacity(most),
+            steady: Vec::with_capacity(most),
         }
     }
 
@@ -93,15 +103,24 @@ impl Guess {
         };
         self.speeds.clear();
         self.times.clear();
+        self.steady.clear();
         self.speeds.push(speed);
         let mut before: Option<&Span<N>> = None;
+        let mut easy = true;
         for span in spans.clone() {
             if let Some(before) = before {
-                self.speeds.push(corner_speed(before, span, weakest));
+                let most = before.limits.velocity.min(span.limits.velocity);
+                let circle = circle_speed(before, span, weakest);
+                let fair = circle > EASE * most;
+                self.steady.push(easy && fair);
+                self.speeds.push(most.min(circle));
+                easy = fair;
             }
             before = Some(span);
         }
         let Some(last) = before else { return };
+        // What comes after it is not known.
+        self.steady.push(false);
         let leave = if open { 1.0 } else { LEAST_SPEED };
         self.speeds.push(leave * last.limits.velocity);
         for (index, span) in spans.clone().enumerate() {
@@ -114,8 +133,9 @@ impl Guess {
             let reach = (to * to + 2.0 * mean(to, span) * span.length).sqrt();
             self.speeds[index] = self.speeds[index].min(reach);
         }
-        for (span, pair) in spans.zip(self.speeds.windows(2)) {
+        for ((span, pair), steady) in spans.zip(self.speeds.windows(2)).zip(&mut self.steady) {
             self.times.push(trapezoid(span, pair[0], pair[1], &mean));
+            *steady &= pair[0].min(pair[1]) >= STEADY * span.limits.velocity;
         }
     }
 }

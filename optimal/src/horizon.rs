@@ -7,13 +7,14 @@
 //! from rest. Not here: how a window is solved.
 
 use crate::accept::accept;
+use crate::event::{Event, Joint};
 use crate::guess::Guess;
-use crate::safe;
+use crate::safe::{self, Line};
 use crate::settings::Settings;
-use crate::span::{Span, steps, weakest};
+use crate::span::{Cruise, Span, steps, weakest};
 use crate::window::{EndState, Segment, Window, WindowMotion, WindowSolver};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Piece, Sample, Vector, WindowTally};
+use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector, WindowTally};
 
 /// Length of a window in times to stop: the part that is handed out, and about one for the way on to be
 /// free and one for the stop at the end.
@@ -37,8 +38,11 @@ pub(crate) const MOST_SPANS: usize = 64;
 /// Most intervals of a window: rounding grows with the sixth power of their number.
 const MOST_STEPS: usize = 560;
 
+/// Room for the intervals of a window, whose last span may reach beyond the most.
+pub(crate) const ROOM: usize = MOST_STEPS + crate::span::MOST_STEPS;
+
 /// Share of every limit that is kept back from the solver, which meets them to its own precision only.
-const MARGIN: f64 = 4e-4;
+const MARGIN: f64 = 2e-4;
 
 /// How much slower than a guess the first motion from rest is taken to be.
 const FROM_REST: f64 = 1.1;
@@ -64,6 +68,8 @@ pub(crate) struct Horizon<S, const N: usize> {
     spans: VecDeque<Span<N>>,
     /// Where motion has been handed out to.
     start: EndState<N>,
+    /// Where the last span leads, once that is known.
+    goal: Option<EndState<N>>,
     /// The plan from there to a stop at the end of the first `planned` spans.
     current: WindowMotion<N>,
     planned: usize,
@@ -76,16 +82,15 @@ pub(crate) struct Horizon<S, const N: usize> {
     candidate: WindowMotion<N>,
     other: WindowMotion<N>,
     ratios: Vec<f64>,
-    pieces: VecDeque<Piece<N>>,
+    events: VecDeque<Event<N>>,
     tally: WindowTally,
 }
 
 fn motion_for<const N: usize>() -> WindowMotion<N> {
-    let most = MOST_STEPS + crate::span::MOST_STEPS;
     WindowMotion {
         durations: Vec::with_capacity(MOST_SPANS),
-        states: Vec::with_capacity(most + 1),
-        jerks: Vec::with_capacity(most),
+        states: Vec::with_capacity(ROOM + 1),
+        jerks: Vec::with_capacity(ROOM),
     }
 }
 
@@ -103,6 +108,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             weakest: weakest(&settings.limits),
             spans: VecDeque::with_capacity(4 * MOST_SPANS),
             start: EndState::rest(start),
+            goal: None,
             current: motion_for(),
             planned: 0,
             expected: Vec::with_capacity(MOST_SPANS),
@@ -113,7 +119,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             candidate: motion_for(),
             other: motion_for(),
             ratios: Vec::with_capacity(MOST_SPANS),
-            pieces: VecDeque::with_capacity(2 * MOST_STEPS),
+            events: VecDeque::with_capacity(2 * MOST_STEPS),
             tally: WindowTally::default(),
         }
     }
@@ -125,17 +131,86 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
 
     /// Plans as far as can be seen; the last line has been pushed to its end.
     pub(crate) fn plan(&mut self) {
-        while self.advance(false) {}
+        while self.advance() {}
     }
 
-    /// The motion rests at the end of the last span.
-    pub(crate) fn rest(&mut self) {
-        while self.advance(true) {}
+    /// The motion rests at the end of the last span, `end`.
+    pub(crate) fn rest(&mut self, end: Vector<N>) {
+        self.close(EndState::rest(end));
     }
 
-    /// The next piece of motion that is settled.
-    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
-        self.pieces.pop_front()
+    /// The last span leads to the middle of a long move, on which motion needs no planning.
+    pub(crate) fn cruise(&mut self, cruise: &Cruise<N>) {
+        let Cruise {
+            direction, speed, ..
+        } = *cruise;
+        let at = |position| EndState {
+            velocity: direction * speed,
+            ..EndState::rest(position)
+        };
+        self.close(at(cruise.start));
+        // Where no window led to it, the motion rests here.
+        let entry = if self.moves() { speed } else { 0.0 };
+        let line = Line {
+            start: cruise.start,
+            end: cruise.end,
+            direction,
+            limits: cruise.limits,
+            serves: cruise.serves,
+        };
+        let travelled = line.travel([entry, speed], |piece| self.pass(&piece, cruise));
+        debug_assert!(travelled, "it is longer than it takes to gain its speed");
+        self.start = at(cruise.end);
+    }
+
+    /// Hands out a piece of the middle of a long move, with a joint where that is at the feedrate.
+    fn pass(&mut self, piece: &Piece<N>, cruise: &Cruise<N>) {
+        let start = piece.at(0.0);
+        let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
+        let Serves { first, last } = cruise.serves;
+        if !steady || first != last {
+            self.events.push_back(Event::Piece(*piece));
+            return;
+        }
+        let half = 0.5 * piece.duration();
+        let joint = Joint {
+            index: first,
+            position: piece.position_at(half),
+            velocity: start.velocity,
+        };
+        let rest = Sample {
+            position: joint.position,
+            ..start
+        };
+        let halves = [
+            Piece::new(&start, half, joint.position, cruise.serves),
+            Piece::new(&rest, half, piece.end(), cruise.serves),
+        ];
+        self.events.push_back(Event::Piece(halves[0]));
+        self.events.push_back(Event::Joint(joint));
+        self.events.push_back(Event::Piece(halves[1]));
+    }
+
+    fn close(&mut self, goal: EndState<N>) {
+        self.goal = Some(goal);
+        while self.advance() {}
+        self.goal = None;
+    }
+
+    /// Whether motion was handed out up to a state that is not one of rest.
+    fn moves(&self) -> bool {
+        self.start.velocity.norm_squared() > 0.0
+    }
+
+    /// Whether the last span leads to a state that is not one of rest.
+    fn passes(&self) -> bool {
+        self.goal
+            .is_some_and(|goal| goal.velocity.norm_squared() > 0.0)
+    }
+
+    /// The next piece of motion that is settled, or joint.
+    pub(crate) fn pull(&mut self) -> Option<Event<N>> {
+        self.events.pop_front()
     }
 
     /// How many windows there were.
@@ -143,16 +218,17 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.tally
     }
 
-    /// Plans a window and hands out its first part; `false` when nothing can be done yet. Where the
-    /// motion is `closing`, it rests at the end of the last span.
-    fn advance(&mut self, closing: bool) -> bool {
+    /// Plans a window and hands out its first part; `false` when nothing can be done yet. Where there is
+    /// a goal, the motion comes to it.
+    fn advance(&mut self) -> bool {
         let known = self.spans.len();
         if known == 0 {
             return false;
         }
+        let closing = self.goal.is_some();
         let speed = self.start.velocity.norm();
-        self.free
-            .fill(self.spans.iter(), speed, !closing, self.weakest);
+        let open = !closing || self.passes();
+        self.free.fill(self.spans.iter(), speed, open, self.weakest);
         let (reach, enough) = self.reach(WINDOW, FEWEST_SPANS);
         let mut window = reach.max((self.planned + 1).min(known));
         if closing && self.fits_at_once(known) {
@@ -161,7 +237,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 self.refine();
             }
         }
-        if closing && window == known && self.planned == known {
+        if closing && window == known && self.planned == known && !self.passes() {
             self.commit(known);
             return true;
         }
@@ -171,8 +247,8 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             return false;
         }
         if closing && self.planned == 0 && safe::on_one_line(self.spans.iter()) == known {
-            // A straight line from rest to rest is known in closed form.
-            self.stop_at_a_move();
+            // A straight line is known in closed form.
+            self.travel_a_line();
             return true;
         }
         self.tally.windows += 1;
@@ -189,7 +265,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             if self.planned > 0 {
                 self.commit(self.planned);
             } else {
-                self.stop_at_a_move();
+                self.travel_a_line();
             }
         }
         true
@@ -198,14 +274,15 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// How many spans take some times to stop, and whether there are as many.
     fn reach(&mut self, stops: f64, fewest: usize) -> (usize, bool) {
         let (mut time, mut stop_time, mut nodes) = (0.0, 0.0_f64, 0);
-        for (index, (span, duration)) in self.spans.iter_mut().zip(&self.free.times).enumerate() {
+        let free = self.free.times.iter().zip(&self.free.steady);
+        for (index, (span, (duration, steady))) in self.spans.iter().zip(free).enumerate() {
             if index >= fewest && time >= stops * stop_time {
                 return (index, true);
             }
             let steps = if span.steps > 0 {
                 span.steps
             } else {
-                span.steps_for(*duration)
+                span.steps_for(*duration, *steady)
             };
             if index > 0 && nodes + steps > MOST_STEPS || index >= MOST_SPANS {
                 return (index, true);
@@ -220,9 +297,10 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
 
     /// Cuts the time of a stretch that is planned at once more finely.
     fn refine(&mut self) {
-        for (span, duration) in self.spans.iter_mut().zip(&self.free.times) {
+        let free = self.free.times.iter().zip(&self.free.steady);
+        for (span, (duration, steady)) in self.spans.iter_mut().zip(free) {
             if span.steps == 0 {
-                span.steps = span.steps_for(REFINED * duration);
+                span.steps = span.steps_for(REFINED * duration, *steady);
             }
         }
     }
@@ -235,26 +313,34 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// Finds a plan for the first `count` spans that is accepted and no worse than the one there is;
     /// from rest, where there is none yet, also for fewer. Gives how many it covers.
     fn improve(&mut self, mut count: usize) -> Option<usize> {
+        // Motion that has just left the middle of a long move can stop at the end of its line.
+        let fewest = if self.moves() {
+            safe::on_one_line(self.spans.iter())
+        } else {
+            1
+        };
         loop {
             if self.try_window(count) {
                 return Some(count);
             }
-            if self.planned > 0 || count == 1 {
+            if self.planned > 0 || count <= fewest {
                 return None;
             }
-            count /= 2;
+            count = (count / 2).max(fewest);
         }
     }
 
     fn try_window(&mut self, count: usize) -> bool {
         let speed = self.start.velocity.norm();
-        for (span, duration) in self.spans.iter_mut().zip(&self.free.times).take(count) {
+        let free = self.free.times.iter().zip(&self.free.steady);
+        for (span, (duration, steady)) in self.spans.iter_mut().zip(free).take(count) {
             if span.steps == 0 {
-                span.steps = span.steps_for(*duration);
+                span.steps = span.steps_for(*duration, *steady);
             }
         }
+        let open = self.passes() && count == self.spans.len();
         self.guess
-            .fill(self.spans.range(..count), speed, false, self.weakest);
+            .fill(self.spans.range(..count), speed, open, self.weakest);
         self.lay_segments(count);
         self.guess_motion(count);
         let mut found = self.solve(count);
@@ -356,6 +442,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// States and jerks for the durations of the candidate: those of the plan in its own time, and
     /// constant speed along what is new.
     fn guess_states(&mut self) {
+        let end = self.end(self.segments.len());
         let WindowMotion {
             durations,
             states,
@@ -390,20 +477,25 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 jerks.push(Vector::zeros());
             }
         }
-        if let Some(last) = self.segments.last() {
-            states.push(EndState::rest(last.end));
-        }
+        states.push(end);
         if let Some(first) = states.first_mut() {
             *first = self.start;
         }
     }
 
+    /// Where a window of the first `count` spans ends: at rest, or at the goal.
+    fn end(&self, count: usize) -> EndState<N> {
+        match self.goal {
+            Some(goal) if count == self.spans.len() => goal,
+            _ => EndState::rest(self.spans[count - 1].end),
+        }
+    }
+
     /// Solves the window for the candidate; whether its motion may be executed.
     fn solve(&mut self, count: usize) -> bool {
-        let end = EndState::rest(self.segments[count - 1].end);
         let window = Window {
             start: self.start,
-            end,
+            end: self.end(count),
             segments: &self.shrunk_segments,
             limits: &self.shrunk,
         };
@@ -434,8 +526,8 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 };
                 node += 1;
                 let end = self.current.states[node].position;
-                self.pieces
-                    .push_back(Piece::new(&start, interval, end, span.serves));
+                let piece = Piece::new(&start, interval, end, span.serves);
+                self.events.push_back(Event::Piece(piece));
             }
         }
         self.start = self.current.states[node];
@@ -449,14 +541,27 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
     }
 
-    /// Travels the next straight line from rest to rest.
-    fn stop_at_a_move(&mut self) {
+    /// Travels the next straight line to its end: to the goal if that is there, else to a stop.
+    fn travel_a_line(&mut self) {
         let count = safe::on_one_line(self.spans.iter());
         let (Some(first), Some(last)) = (self.spans.front(), self.spans.get(count - 1)) else {
             return;
         };
-        safe::travel(first, last, |piece| self.pieces.push_back(piece));
-        self.start = EndState::rest(last.end);
+        let line = Line::of(first, last);
+        let entry = self.start.velocity.norm();
+        let goal = self.end(count);
+        let exit = goal.velocity.norm();
+        let mut end = goal;
+        if !line.travel([entry, exit], |piece| {
+            self.events.push_back(Event::Piece(piece))
+        }) {
+            end = EndState::rest(line.end);
+            let travelled = line.travel([entry, 0.0], |piece| {
+                self.events.push_back(Event::Piece(piece))
+            });
+            debug_assert!(travelled, "a line can be travelled to a stop");
+        }
+        self.start = end;
         self.spans.drain(..count);
         self.expected.clear();
     }

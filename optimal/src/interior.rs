@@ -118,6 +118,22 @@ pub(crate) struct Interior<const N: usize> {
 }
 
 impl<const N: usize> Interior<N> {
+    /// Makes room for windows of so many segments and intervals.
+    pub(crate) fn reserve(&mut self, segments: usize, steps: usize) {
+        self.states.reserve(steps + 1);
+        self.jerks.reserve(steps);
+        self.rows.reserve(steps + 1);
+        self.misses.reserve(steps);
+        self.gains.reserve(steps);
+        self.state_changes.reserve(steps + 1);
+        self.jerk_changes.reserve(steps);
+        self.stretches.reserve(segments);
+        self.trust.reserve(segments);
+        self.stretch_rows.reserve(segments);
+        self.stretch_gains.reserve(segments);
+        self.stretch_changes.reserve(segments);
+    }
+
     /// Solves a problem from the states and jerks at hand.
     pub(crate) fn solve(
         &mut self,

@@ -92,6 +92,15 @@ impl<const N: usize> Default for Problem<N> {
 }
 
 impl<const N: usize> Problem<N> {
+    /// Makes room for windows of so many segments and intervals.
+    pub(crate) fn reserve(&mut self, segments: usize, steps: usize) {
+        self.tracks.reserve(segments);
+        self.segment_of.reserve(steps + 1);
+        self.bases.reserve(steps + 1);
+        self.base.reserve(steps + 1);
+        self.base_jerks.reserve(steps);
+    }
+
     /// Takes a window.
     pub(crate) fn load(&mut self, window: &Window<'_, N>) -> Result<(), WindowDefect> {
         let first = window.segments.first().ok_or(WindowDefect::Empty)?;

@@ -1,8 +1,9 @@
 //! Runs cut into what one window can hold, and how finely their time is cut.
 //!
 //! Source: ours. The jerk is constant over an interval, so that intervals must be short against the
-//! time in which the acceleration is built up; where a long move is travelled at constant speed they
-//! may be long. Not here: windows.
+//! time in which the acceleration is built up; where speed is constant they may be long. The middle of a
+//! long move is not planned in windows at all: there the feedrate holds on the line itself. Not here:
+//! windows.
 
 use crate::runs::Run;
 use toolglide_kinematics::{Limits, Serves, Tangential, Vector};
@@ -16,9 +17,15 @@ pub(crate) const FEWEST_STEPS: usize = 4;
 /// Most intervals of a span.
 pub(crate) const MOST_STEPS: usize = 60;
 
-/// Intervals of a span in the middle of a long move, and how much longer they are than elsewhere.
-const CRUISE_STEPS: usize = 6;
-const CRUISE_STRETCH: f64 = 5.0;
+/// Most intervals of a span that is travelled at constant speed.
+const STEADY_STEPS: usize = 6;
+
+/// Shortest middle of a long move that is not planned in windows, as a multiple of the interval.
+const CRUISE_STEPS: f64 = 30.0;
+
+/// Share of the feedrate at which such a middle is entered and left: a little less than what a solver
+/// may use, so that a window can begin and end there.
+const CRUISE_SHARE: f64 = 1.0 - 4e-4;
 
 /// Room at the ends of a long move, as a multiple of the distance to stop.
 const END_ROOM: f64 = 1.25;
@@ -43,10 +50,29 @@ pub(crate) struct Span<const N: usize> {
     pub(crate) interval: f64,
     /// Time to stop from its feedrate, s.
     pub(crate) stop_time: f64,
-    /// Whether it lies in the middle of a long move, where few intervals are enough.
-    pub(crate) cruise: bool,
     /// Intervals, fixed when it is first planned; 0 before.
     pub(crate) steps: usize,
+}
+
+/// The middle of a long move: travelled on the line itself, up to the feedrate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cruise<const N: usize> {
+    pub(crate) start: Vector<N>,
+    pub(crate) end: Vector<N>,
+    pub(crate) direction: Vector<N>,
+    pub(crate) limits: Tangential,
+    /// Speed at its start and at its end, mm/s.
+    pub(crate) speed: f64,
+    pub(crate) serves: Serves,
+}
+
+/// What a run is cut into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Part<const N: usize> {
+    /// To be planned in windows.
+    Span(Span<N>),
+    /// The middle of a long move.
+    Cruise(Cruise<N>),
 }
 
 /// How finely time is cut, as a share of the time in which the acceleration is built up.
@@ -58,12 +84,12 @@ pub(crate) fn weakest<const N: usize>(limits: &Limits<N>) -> (f64, f64) {
     (limits.acceleration().min(), limits.jerk().min())
 }
 
-/// Cuts a run into spans.
+/// Cuts a run into spans and the middle of a long move.
 pub(crate) fn cut<const N: usize>(
     run: &Run<N>,
     limits: &Limits<N>,
     fineness: Fineness,
-    mut take: impl FnMut(Span<N>),
+    mut take: impl FnMut(Part<N>),
 ) {
     let mut along = limits.along(&run.direction);
     along.velocity = along.velocity.min(run.feedrate);
@@ -90,55 +116,57 @@ pub(crate) fn cut<const N: usize>(
         serves: run.serves,
         interval,
         stop_time,
-        cruise: false,
         steps: 0,
     };
-    let mut at = 0.0;
-    let mut part = |to: f64, cruise: bool| {
+    let place = |along: f64| {
+        if along <= 0.0 {
+            run.start
+        } else if along >= run.length {
+            run.end
+        } else {
+            run.start + run.direction * along
+        }
+    };
+    let span = |from: f64, to: f64| {
         let last = to >= run.length;
-        let place = |along: f64| {
-            if along <= 0.0 {
-                run.start
-            } else if along >= run.length {
-                run.end
-            } else {
-                run.start + run.direction * along
-            }
-        };
-        take(Span {
-            start: place(at),
+        Part::Span(Span {
+            start: place(from),
             end: place(to),
-            length: to.min(run.length) - at,
+            length: to.min(run.length) - from,
             // Where a line is only cut, the ball costs nothing: when it is passed is free.
             balls: [
-                if at > 0.0 { run.tube } else { run.balls[0] },
+                if from > 0.0 { run.tube } else { run.balls[0] },
                 if last { run.balls[1] } else { run.tube },
             ],
             goes_on: !last,
-            cruise,
             ..whole
-        });
-        at = to;
+        })
     };
-    let room = END_ROOM * 0.5 * along.velocity * stop_time;
+    let distance_to_stop = 0.5 * along.velocity * stop_time;
+    let room = END_ROOM * distance_to_stop;
     let middle = run.length - 2.0 * room;
-    let cruise_length = along.velocity * interval * CRUISE_STRETCH * steps(CRUISE_STEPS);
-    if middle > cruise_length {
+    if middle > distance_to_stop.max(along.velocity * interval * CRUISE_STEPS) {
         let ends = parts(stop_time * END_ROOM, interval);
-        let middles = (middle / cruise_length).ceil();
-        for index in 1..=ends {
-            part(room * steps(index) / steps(ends), false);
+        let share = |index| room * steps(index) / steps(ends);
+        for index in 0..ends {
+            take(span(share(index), share(index + 1)));
         }
-        let mut index = 1.0;
-        while index <= middles {
-            part(room + middle * index / middles, true);
-            index += 1.0;
+        take(Part::Cruise(Cruise {
+            start: place(room),
+            end: place(run.length - room),
+            direction: run.direction,
+            limits: along,
+            speed: CRUISE_SHARE * along.velocity,
+            serves: run.serves,
+        }));
+        for left in (1..=ends).rev() {
+            let to = if left > 1 {
+                run.length - share(left - 1)
+            } else {
+                f64::INFINITY
+            };
+            take(span(run.length - share(left), to));
         }
-        for index in 1..ends {
-            let left = steps(ends - index) / steps(ends);
-            part(run.length - room * left, false);
-        }
-        part(f64::INFINITY, false);
     } else {
         let reach = along.reachable_within(run.length);
         let time = 2.0 * along.time_to_change(reach) + run.length / along.velocity;
@@ -148,10 +176,11 @@ pub(crate) fn cut<const N: usize>(
         } else {
             1
         };
+        let share = |index| run.length * steps(index) / steps(count);
         for index in 1..count {
-            part(run.length * steps(index) / steps(count), false);
+            take(span(share(index - 1), share(index)));
         }
-        part(f64::INFINITY, false);
+        take(span(share(count - 1), f64::INFINITY));
     }
 }
 
@@ -171,18 +200,16 @@ fn parts(time: f64, interval: f64) -> usize {
 }
 
 impl<const N: usize> Span<N> {
-    /// Intervals for a duration.
+    /// Intervals for a duration, over which its speed is `steady` or not.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "clamped to a small range"
     )]
-    pub(crate) fn steps_for(&self, time: f64) -> usize {
-        if self.cruise {
-            return CRUISE_STEPS;
-        }
+    pub(crate) fn steps_for(&self, time: f64, steady: bool) -> usize {
+        let most = if steady { STEADY_STEPS } else { MOST_STEPS };
         (time / self.interval)
             .ceil()
-            .clamp(steps(FEWEST_STEPS), steps(MOST_STEPS)) as usize
+            .clamp(steps(FEWEST_STEPS), steps(most)) as usize
     }
 }

@@ -5,25 +5,17 @@
 //! the comparison with other motion.
 
 use crate::chords::Chords;
+use crate::event::Event;
 use crate::horizon::Horizon;
 use crate::runs::{Joiner, Pause, Run, Vertex};
 use crate::settings::Settings;
-use crate::span::{Fineness, cut};
+use crate::span::{Fineness, Part, cut};
 use crate::window::WindowSolver;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Move, Path, Piece, Serves, Vector, WindowTally};
+use toolglide_kinematics::{Limits, Move, Path, Serves, Vector, WindowTally};
 
 /// Events that are kept room for: those of a window and a few stops.
 const EVENTS: usize = 2048;
-
-/// A piece of motion, or the end of a stretch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Event<const N: usize> {
-    /// Motion.
-    Piece(Piece<N>),
-    /// The motion rests at the end of this move, and all up to it has been planned.
-    Rest(u32),
-}
 
 /// Plans a stream of moves by a window solver.
 #[derive(Clone, Debug)]
@@ -145,8 +137,9 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
     }
 
     fn take_run(&mut self, run: &Run<N>) {
-        cut(run, &self.limits, self.fineness, |span| {
-            self.horizon.push(span);
+        cut(run, &self.limits, self.fineness, |part| match part {
+            Part::Span(span) => self.horizon.push(span),
+            Part::Cruise(cruise) => self.horizon.cruise(&cruise),
         });
         self.horizon.plan();
         self.collect();
@@ -157,7 +150,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         if let Some(run) = self.joiner.flush() {
             self.take_run(&run);
         }
-        self.horizon.rest();
+        self.horizon.rest(self.joiner.anchor());
         self.collect();
         let at = self.joiner.anchor();
         let pause = match (self.joiner.take_carried(), pause) {
@@ -172,8 +165,8 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
     }
 
     fn collect(&mut self) {
-        while let Some(piece) = self.horizon.pull() {
-            self.events.push_back(Event::Piece(piece));
+        while let Some(event) = self.horizon.pull() {
+            self.events.push_back(event);
         }
     }
 }

@@ -249,6 +249,75 @@ fn both_solvers_find_the_same_motion() {
 }
 
 #[test]
+fn the_middle_of_long_moves_takes_no_windows_and_the_faster_motion_may_change_there() {
+    let limits = Limits::uniform(500.0, 2000.0, 5e4).unwrap();
+    let square = |side: f64| {
+        let points: Vec<_> = (0..13_u32)
+            .map(|k| [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]][k as usize % 4])
+            .map(Vector::<2>::from)
+            .collect();
+        let feedrate = Feedrate::new(100.0).unwrap();
+        Toolpath::from_points(&points, feedrate, Tolerance::new(0.05).unwrap()).unwrap()
+    };
+    let (near, far) = (square(40.0), square(4000.0));
+    let (short, few) = run(SequentialSolver::new(), &near, limits);
+    let (long, many) = run(SequentialSolver::new(), &far, limits);
+    for (plan, path) in [(&short, &near), (&long, &far)] {
+        let report = verify(plan, path, &limits);
+        assert!(report.passes(), "{:#?}", report.examples);
+    }
+    assert_eq!(few.windows, many.windows, "corners are all that is planned");
+    assert_eq!(few.stretches, 13, "eleven corners and two ends: {few:?}");
+    assert!(few.yielded <= 2, "start and stop: {few:?}");
+    let apart = long.duration() - short.duration();
+    let straight = 12.0 * (4000.0 - 40.0) / 100.0;
+    assert!(
+        (apart - straight).abs() < 1e-6,
+        "{apart} s for {straight} s"
+    );
+    let settings = toolglide_smoothing::Settings::new(limits);
+    let smoothed = toolglide_smoothing::plan(&near, &settings).unwrap();
+    assert!(
+        short.duration() < smoothed.duration() - 11.0 * 0.003,
+        "{} s, {} s",
+        short.duration(),
+        smoothed.duration()
+    );
+}
+
+#[test]
+fn where_a_window_does_not_lead_to_the_middle_of_a_long_move_it_is_reached_from_rest() {
+    let points = [
+        [0.0, 0.0],
+        [60.0, 0.0],
+        [60.0, 1.0],
+        [0.0, 30.0],
+        [0.0, 90.0],
+    ]
+    .map(Vector::<2>::from);
+    let path = Toolpath::from_points(
+        &points,
+        Feedrate::new(100.0).unwrap(),
+        Tolerance::new(0.05).unwrap(),
+    )
+    .unwrap();
+    let limits = Limits::new([
+        AxisLimits::new(500.0, 2000.0, 5e4).unwrap(),
+        AxisLimits::new(80.0, 900.0, 9e3).unwrap(),
+    ]);
+    for every in 1..4 {
+        let failing = Failing {
+            conic: Conic::default(),
+            windows: 0,
+            every,
+        };
+        let (plan, tally) = run(failing, &path, limits);
+        let report = verify(&plan, &path, &limits);
+        assert!(report.passes(), "{every}, {tally:?} {:#?}", report.examples);
+    }
+}
+
+#[test]
 fn pauses_that_follow_each_other_all_last() {
     let room = Tolerance::new(0.05).unwrap();
     let limits = Limits::uniform(500.0, 2000.0, 5e4).unwrap();

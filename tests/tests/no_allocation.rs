@@ -214,3 +214,59 @@ fn planning_filtered_pulses_and_filtering_ticks_allocates_nothing() {
     });
     assert_eq!(counted.count_total, 0, "ticks: {counted:?}");
 }
+
+/// Allocations of time-optimal planning while a path is pushed and pulled.
+fn optimal_allocations<const N: usize>(path: &Toolpath<N>, limits: Limits<N>, effort: u8) -> u64 {
+    let settings = toolglide_optimal::Settings::new(limits)
+        .with_effort(toolglide_optimal::Effort::new(effort).unwrap());
+    let mut planner = toolglide_optimal::TimeOptimal::<N>::new(path.start(), &settings);
+    let mut pieces = 0_u64;
+    let counted = measure(|| {
+        for step in path.moves().iter().map(Some).chain([None]) {
+            match step {
+                Some(step) => planner.push(step).unwrap(),
+                None => planner.finish().unwrap(),
+            }
+            while let Some(piece) = planner.pull() {
+                black_box(piece);
+                pieces += 1;
+            }
+        }
+    });
+    let tally = planner.windows().unwrap();
+    assert!(tally.windows > 10 && pieces > 1_000, "{tally:?}");
+    counted.count_total
+}
+
+#[test]
+fn time_optimal_planning_allocates_nothing() {
+    for effort in [1, 5] {
+        let counted = optimal_allocations(&mixed(6), limits(), effort);
+        assert_eq!(counted, 0, "lines, arcs, dwells and stops, effort {effort}");
+    }
+    let ends: Vec<_> = (1..400)
+        .map(|k| [f64::from(k) * 0.3, f64::from(k % 7) * 0.1, 0.0])
+        .collect();
+    let short = Course::of_lines([0.0; 3], &ends, 100.0, 0.01).toolpath();
+    assert_eq!(optimal_allocations(&short, limits(), 3), 0, "short moves");
+    let ends: Vec<_> = (1..40)
+        .map(|k| [f64::from(k) * 30.0, f64::from(k % 2) * 30.0, 0.0])
+        .collect();
+    let long = Course::of_lines([0.0; 3], &ends, 100.0, 0.01).toolpath();
+    assert_eq!(optimal_allocations(&long, limits(), 5), 0, "long moves");
+    // Limits that let windows fail, and the plan before go on.
+    let uneven = course_limits();
+    assert_eq!(
+        optimal_allocations(&mixed(4), uneven, 2),
+        0,
+        "uneven limits"
+    );
+}
+
+fn course_limits() -> Limits<3> {
+    toolglide_tests::course::limits(&[
+        [500.0, 5_000.0, 4e5],
+        [300.0, 600.0, 8e3],
+        [100.0, 500.0, 1e4],
+    ])
+}
