@@ -76,6 +76,26 @@ impl FilterChain {
         }
     }
 
+    /// Position, velocity, acceleration and jerk at once, `time` after the commanded velocity has stepped
+    /// from 0 to 1.
+    ///
+    /// # Source
+    /// As each by itself.
+    #[must_use]
+    pub fn state(&self, time: f64) -> [f64; 4] {
+        let (total, half) = (self.total_delay(), 0.5 * self.total_delay());
+        if time <= 0.0 {
+            [0.0; 4]
+        } else if time <= half {
+            self.truncated_state(time)
+        } else if time < total {
+            let [position, velocity, acceleration, jerk] = self.truncated_state(total - time);
+            [time - half + position, 1.0 - velocity, acceleration, -jerk]
+        } else {
+            [time - half, 1.0, 0.0, 0.0]
+        }
+    }
+
     /// The time at which [`position`](Self::position) reaches `position`; 0 for 0 or less.
     ///
     /// # Source
@@ -165,6 +185,31 @@ impl FilterChain {
             sum += sign * (time - shift).powi(power);
         }
         sum / (factorial * self.product())
+    }
+}
+
+impl FilterChain {
+    /// The sums over all subsets of all orders, from the position to the jerk.
+    fn truncated_state(&self, time: f64) -> [f64; 4] {
+        let filters = self.time_constants().len();
+        let mut state = [0.0; 4];
+        for &(shift, sign) in &self.shifts {
+            if shift >= time {
+                break;
+            }
+            // Powers from 0 on, each over its factorial.
+            let mut part = sign;
+            let mut divisor = 0.0;
+            for power in 0..=filters + 1 {
+                let derivative = filters + 1 - power;
+                if derivative < 4 {
+                    state[derivative] += part;
+                }
+                divisor += 1.0;
+                part *= (time - shift) / divisor;
+            }
+        }
+        state.map(|sum| sum / self.product())
     }
 }
 
@@ -310,6 +355,25 @@ mod tests {
                 (slope(FilterChain::velocity) - filters.acceleration(time)).abs() < 1e-3 * scale
                     || lengths.len() == 1
             );
+        }
+
+        #[test]
+        fn all_responses_at_once_are_those_one_by_one(
+            lengths in prop::collection::vec(0.01..0.2_f64, 1..6),
+            share in -0.2..1.2_f64,
+        ) {
+            let filters = chain(&lengths);
+            let time = share * filters.total_delay();
+            let state = filters.state(time);
+            let each = [
+                filters.position(time),
+                filters.velocity(time),
+                filters.acceleration(time),
+                filters.jerk(time),
+            ];
+            for (at_once, alone) in state.into_iter().zip(each) {
+                prop_assert!((at_once - alone).abs() <= 1e-9 * alone.abs().max(1.0), "{at_once} is not {alone}");
+            }
         }
 
         #[test]

@@ -9,9 +9,7 @@ use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
 use crate::way::{AxisWay, Way};
-use toolglide_kinematics::{
-    Axis, CubicInTime, MOST_AXES, MachineKinematics, ToolPose, cubic_at, turned,
-};
+use toolglide_kinematics::{Axis, MOST_AXES, MachineKinematics, ToolPose, turned};
 
 /// Share of both blocks at which is measured what they add together.
 const TOGETHER: f64 = 0.5;
@@ -70,64 +68,50 @@ pub(crate) fn mixed(
 /// Progress of a block over an interval.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Progress {
-    cubic: CubicInTime,
-    duration: f64,
-    /// Largest distance from the corner, as a share.
-    away: f64,
+    /// Rate at the start and at the end, its change there, and how that changes.
+    of_slope: [f64; 5],
+    /// Largest distance from the start and from the end of the block, as a share.
+    away: [f64; 2],
     /// Largest rate, its largest change, and how that changes.
     most: [f64; 3],
 }
 
 impl Progress {
-    /// Progress by a polynomial; the corner is at its `end`, or at its start.
-    pub(crate) fn new(cubic: CubicInTime, duration: f64, end: bool) -> Self {
-        let rate = |time: f64| cubic[1] + (2.0 * cubic[2] + 3.0 * cubic[3] * time) * time;
-        let change = |time: f64| 2.0 * cubic[2] + 6.0 * cubic[3] * time;
-        let shares = [cubic[0], cubic_at(&cubic, duration)];
-        let away = if end {
-            1.0 - shares[0].min(shares[1])
+    /// Progress and its derivatives in the middle of an interval, and half of its duration.
+    pub(crate) fn new([share, rate, change, jolt]: [f64; 4], half: f64) -> Self {
+        let rise = rate + 0.5 * jolt * half * half;
+        let rates = [rise - change * half, rise + change * half];
+        let changes = [change - jolt * half, change + jolt * half];
+        let middle = share + 0.5 * change * half * half;
+        let gone = (rate + jolt * half * half / 6.0) * half;
+        let away = |share: f64| share.clamp(0.0, 1.0);
+        // The rate is at its peak where its change is 0.
+        let peak = if changes[0] * changes[1] < 0.0 {
+            rate - 0.5 * change * change / jolt
         } else {
-            shares[0].max(shares[1])
+            0.0
         };
-        let turning = (-cubic[2] / (3.0 * cubic[3])).clamp(0.0, duration);
-        let most = [0.0, turning, duration]
-            .iter()
-            .filter(|time| !time.is_nan())
-            .map(|time| rate(*time).abs())
-            .fold(0.0, f64::max);
         Self {
-            cubic,
-            duration,
-            away: away.clamp(0.0, 1.0),
+            of_slope: [rates[0], rates[1], changes[0], changes[1], jolt],
+            // A rate is never negative, so that the distance is largest at one of the ends.
+            away: [away(middle + gone.abs()), away(1.0 - middle + gone.abs())],
             most: [
-                most,
-                change(0.0).abs().max(change(duration).abs()),
-                6.0 * cubic[3].abs(),
+                rates[0].abs().max(rates[1].abs()).max(peak.abs()),
+                changes[0].abs().max(changes[1].abs()),
+                jolt.abs(),
             ],
         }
     }
 
-    /// What a unit of slope adds to velocity and acceleration at both ends, and to the jerk.
-    fn of_slope(&self) -> [f64; 5] {
-        let [_, one, two, three] = self.cubic;
-        let time = self.duration;
-        [
-            one,
-            one + (2.0 * two + 3.0 * three * time) * time,
-            2.0 * two,
-            2.0 * two + 6.0 * three * time,
-            6.0 * three,
-        ]
-    }
-
-    /// What the bends of a way add to the three derivatives at most.
-    fn of_bends(&self, way: &AxisWay) -> [f64; 3] {
+    /// What the bends of a way add to the three derivatives at most, seen from its start or its `end`.
+    fn of_bends(&self, way: &AxisWay, end: usize) -> [f64; 3] {
         let [rate, change, jolt] = self.most;
         let [_, second, third] = way.most;
+        let away = self.away[end];
         [
-            second * self.away * rate,
-            second * (self.away * change + rate * rate),
-            second * (self.away * jolt + 3.0 * rate * change) + third * rate.powi(3),
+            second * away * rate,
+            second * (away * change + rate * rate),
+            second * (away * jolt + 3.0 * rate * change) + third * rate * rate * rate,
         ]
     }
 
@@ -138,20 +122,19 @@ impl Progress {
         [
             first * rate,
             first * change + second * rate * rate,
-            first * jolt + 3.0 * second * rate * change + third * rate.powi(3),
+            first * jolt + 3.0 * second * rate * change + third * rate * rate * rate,
         ]
     }
 }
 
 /// The limit that one block comes nearest to at most.
-pub(crate) fn alone(axes: &[Axis], way: &[AxisWay; MOST_AXES], progress: [Progress; 2]) -> Worst {
+pub(crate) fn alone(axes: &[Axis], ways: &[AxisWay], progress: Progress, half: f64) -> Worst {
     let mut worst = Worst::NONE;
-    for (axis, limits) in axes.iter().enumerate() {
-        let way = &way[axis];
-        let anywhere = progress[0].anywhere(way);
+    for (axis, (limits, way)) in axes.iter().zip(ways).enumerate() {
+        let anywhere = progress.anywhere(way);
         let from = [0, 1].map(|end| {
-            let slope = progress[end].of_slope().map(|part| part * way.ends[end]);
-            sum(slope, progress[end].of_bends(way), progress[end].duration)
+            let slope = progress.of_slope.map(|part| part * way.ends[end]);
+            sum(slope, progress.of_bends(way, end), half)
         });
         let least =
             std::array::from_fn(|order| anywhere[order].min(from[0][order]).min(from[1][order]));
@@ -163,41 +146,40 @@ pub(crate) fn alone(axes: &[Axis], way: &[AxisWay; MOST_AXES], progress: [Progre
 /// The limit that two blocks come nearest to at most while they are under way together.
 pub(crate) fn together(
     axes: &[Axis],
-    ways: [&[AxisWay; MOST_AXES]; 2],
-    progress: [Progress; 2],
+    ways: [&[AxisWay]; 2],
+    [before, after]: [Progress; 2],
     mixed: &Mixed,
+    half: f64,
 ) -> Worst {
-    let [before, after] = progress;
     let mut worst = Worst::NONE;
-    let slopes = progress.map(|progress| progress.of_slope());
+    let (one, two) = (before.most, after.most);
+    let (away_before, away_after) = (before.away[1], after.away[0]);
+    // What the mixed derivative is multiplied with.
+    let both = [
+        one[0] * away_after + two[0] * away_before,
+        one[1] * away_after + 2.0 * one[0] * two[0] + two[1] * away_before,
+        one[2] * away_after + 3.0 * (one[1] * two[0] + one[0] * two[1]) + two[2] * away_before,
+    ];
     for (axis, limits) in axes.iter().enumerate() {
         let (one, two) = (&ways[0][axis], &ways[1][axis]);
         let slope = std::array::from_fn(|part| {
-            slopes[0][part] * one.ends[1] + slopes[1][part] * two.ends[0]
+            before.of_slope[part] * one.ends[1] + after.of_slope[part] * two.ends[0]
         });
-        let bends = [before.of_bends(one), after.of_bends(two)];
-        let mixed = mixed[axis];
-        let (one, two) = (before.most, after.most);
-        let both = [
-            mixed * (one[0] * after.away + two[0] * before.away),
-            mixed * (one[1] * after.away + 2.0 * one[0] * two[0] + two[1] * before.away),
-            mixed
-                * (one[2] * after.away
-                    + 3.0 * (one[1] * two[0] + one[0] * two[1])
-                    + two[2] * before.away),
-        ];
-        let rest = std::array::from_fn(|order| bends[0][order] + bends[1][order] + both[order]);
-        worst.raise(axis, limits, sum(slope, rest, before.duration));
+        let bends = [before.of_bends(one, 1), after.of_bends(two, 0)];
+        let rest = std::array::from_fn(|order| {
+            bends[0][order] + bends[1][order] + mixed[axis] * both[order]
+        });
+        worst.raise(axis, limits, sum(slope, rest, half));
     }
     worst
 }
 
 /// Bounds of the three derivatives from what slopes add at both ends, and the rest.
-fn sum(slope: [f64; 5], rest: [f64; 3], duration: f64) -> [f64; 3] {
+fn sum(slope: [f64; 5], rest: [f64; 3], half: f64) -> [f64; 3] {
     let [begin, end, change_begin, change_end, jolt] = slope.map(f64::abs);
     [
-        // A parabola is above its ends by an eighth of this at most.
-        begin.max(end) + jolt * duration * duration / 8.0 + rest[0],
+        // A parabola is above its ends by half of this at most.
+        begin.max(end) + 0.5 * jolt * half * half + rest[0],
         change_begin.max(change_end) + rest[1],
         jolt + rest[2],
     ]

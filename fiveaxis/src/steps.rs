@@ -57,6 +57,17 @@ impl Steps {
         ]
     }
 
+    /// Filtered progress and its first three derivatives at an instant.
+    pub(crate) fn state(&self, chain: &FilterChain, time: f64) -> [f64; 4] {
+        let mut state = [0.0; 4];
+        for &(at, change) in &self.list[..self.count] {
+            for (sum, part) in state.iter_mut().zip(chain.state(time - at)) {
+                *sum += change * part;
+            }
+        }
+        state
+    }
+
     fn sum(&self, response: impl Fn(f64) -> f64) -> f64 {
         self.list[..self.count]
             .iter()

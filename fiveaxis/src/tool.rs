@@ -94,18 +94,16 @@ impl<'a> ToolStretch<'a> {
         [begin, end]: [f64; 2],
         [oldest, newest]: [usize; 2],
     ) -> Option<Worst> {
-        let inside = 0.5 * (begin + end);
-        let cubic = |block: usize| steps[block].cubic(self.chain(), begin, inside);
-        let progress = |block: usize, at_end| Progress::new(cubic(block), end - begin, at_end);
+        let (middle, half) = (0.5 * (begin + end), 0.5 * (end - begin));
+        let progress = |block: usize| Progress::new(steps[block].state(self.chain(), middle), half);
         if oldest == newest {
             let way = self.ways[oldest].known()?;
-            let progress = [progress(oldest, false), progress(oldest, true)];
-            Some(alone(self.axes, way, progress))
+            Some(alone(self.axes, way, progress(oldest), half))
         } else if oldest + 1 == newest {
             let ways = [self.ways[oldest].known()?, self.ways[newest].known()?];
-            let progress = [progress(oldest, true), progress(newest, false)];
             let mixed = self.mixed[oldest].as_ref()?;
-            Some(together(self.axes, ways, progress, mixed))
+            let progress = [progress(oldest), progress(newest)];
+            Some(together(self.axes, ways, progress, mixed, half))
         } else {
             None
         }

@@ -40,6 +40,8 @@ pub(crate) struct AxisWay {
     pub(crate) ends: [f64; 2],
     /// What the derivatives are at most, at any share.
     pub(crate) most: Slopes,
+    /// What they are seen to be, at some share.
+    seen: Slopes,
 }
 
 /// The way of the axes along a block.
@@ -47,9 +49,7 @@ pub(crate) struct AxisWay {
 pub(crate) struct Way {
     /// Shares of the block in increasing order, and axis positions there.
     positions: Vec<(f64, AxisVector)>,
-    axes: [AxisWay; MOST_AXES],
-    /// What derivatives are seen to be, at some share.
-    seen: [Slopes; MOST_AXES],
+    axes: Vec<AxisWay>,
     /// Whether the polynomials are near enough.
     known: bool,
 }
@@ -67,8 +67,7 @@ impl Way {
             .clamp(1.0, MOST);
         let mut way = Self {
             positions: Vec::with_capacity(STATIONS),
-            axes: [AxisWay::default(); MOST_AXES],
-            seen: [[0.0; 3]; MOST_AXES],
+            axes: vec![AxisWay::default(); machine.axes().len()],
             known: true,
         };
         let refused = |reason| FiveAxisError::Machine {
@@ -116,9 +115,12 @@ impl Way {
             }
         }
         let axes = first.len();
-        let series = values.map(|values| through_stations(&values));
-        let resolved =
-            refused.is_none() && series[..axes].iter().all(|series| falls(series, RESOLVED));
+        let mut series = [[0.0; STATIONS]; MOST_AXES];
+        let mut resolved = refused.is_none();
+        for (series, values) in series.iter_mut().zip(&values[..axes]) {
+            *series = through_stations(values);
+            resolved &= falls(series, RESOLVED);
+        }
         if !resolved && end - begin > SHORTEST {
             self.positions.truncate(count);
             let middle = 0.5 * (begin + end);
@@ -164,8 +166,7 @@ impl Way {
                     .iter()
                     .map(|at| value(&series, *at).abs())
                     .fold(0.0, f64::max);
-                let before = &mut self.seen[axis][order];
-                *before = before.max(factor * seen);
+                way.seen[order] = way.seen[order].max(factor * seen);
             }
         }
     }
@@ -187,8 +188,8 @@ impl Way {
     }
 
     /// What is known of an axis, where the polynomials are near enough.
-    pub(crate) fn known(&self) -> Option<&[AxisWay; MOST_AXES]> {
-        self.known.then_some(&self.axes)
+    pub(crate) fn known(&self) -> Option<&[AxisWay]> {
+        self.known.then_some(self.axes.as_slice())
     }
 
     /// A duration that the block has at least, and the limit that asks for it.
@@ -200,14 +201,13 @@ impl Way {
             return (0.0, Worst::NONE);
         };
         let mut least = (0.0, Worst::NONE);
-        for (axis, limits) in axes.iter().enumerate() {
+        for (axis, (limits, way)) in axes.iter().zip(&self.axes).enumerate() {
             let velocity = AIM * limits.limits.velocity();
             let acceleration = AIM * limits.limits.acceleration();
             let jerk = AIM * limits.limits.jerk();
-            let [first, second, third] = self.seen[axis];
-            let ends = self.axes[axis].ends;
+            let [first, second, third] = way.seen;
             let end = if self.known {
-                ends[0].abs().max(ends[1].abs())
+                way.ends[0].abs().max(way.ends[1].abs())
             } else {
                 first
             };

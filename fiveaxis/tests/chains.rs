@@ -6,6 +6,9 @@ use common::{judge, legs, plan, settings, start_of, table_ac};
 use proptest::prelude::*;
 use toolglide_fiveaxis::PoseMethod;
 
+/// What rounding adds to a share of a tolerance.
+const ROUNDING: f64 = 1e-9;
+
 /// A chain of poses whose steps are from a hundredth to some tens of millimetres, and whose tool turns
 /// by up to some tenths of a radian at a step; some steps move the tip alone or the tool alone.
 fn chain() -> impl Strategy<Value = Vec<[f64; 6]>> {
@@ -84,7 +87,7 @@ fn keeps_everything(
         report.orientation_ratio,
         report.orientation_corner_ratio,
     ] {
-        prop_assert!(ratio.value < 1.0005, "{method:?}: {ratio:?}");
+        prop_assert!(ratio.value < 1.0 + ROUNDING, "{method:?}: {ratio:?}");
     }
     Ok(())
 }

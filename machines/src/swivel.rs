@@ -42,7 +42,8 @@ impl Swivel {
     /// stays at `near`.
     pub(crate) fn towards(direction: &Vector<3>, near: f64) -> [Self; 2] {
         let [x, y, z] = (*direction).into();
-        let across = x.hypot(y);
+        // Nothing is lost to the squares of a direction this far from the pole.
+        let across = (x * x + y * y).sqrt();
         let first = if across > NEAR_POLE {
             Self {
                 tilt: across.atan2(z),

@@ -6,6 +6,7 @@
 use crate::axis_vector::AxisVector;
 use crate::machine::{Axis, KinematicsError, MachineKinematics};
 use crate::pose_piece::{AxesPiece, CubicInTime, ToolPiece};
+use std::sync::LazyLock;
 
 /// Nodes of one interpolation.
 const NODES: usize = 12;
@@ -175,25 +176,28 @@ fn last_jerk() -> f64 {
     n * (n - 1.0) * (n - 4.0) / 15.0
 }
 
-/// Coefficients of the series through the values at the nodes, which run from -1 to 1.
-fn coefficients(values: &[f64; NODES]) -> [f64; NODES] {
-    let mut series = [0.0; NODES];
-    for (order, coefficient) in series.iter_mut().enumerate() {
-        let sum: f64 = values
-            .iter()
-            .enumerate()
-            .map(|(node, value)| {
-                let angle = std::f64::consts::PI * fraction(order) * (fraction(node) + 0.5)
-                    / fraction(NODES);
-                value * angle.cos()
-            })
-            .sum();
+/// From values at the nodes, which run from -1 to 1, to the coefficients of the series through them.
+static TO_SERIES: LazyLock<[[f64; NODES]; NODES]> = LazyLock::new(|| {
+    std::array::from_fn(|order| {
         // The nodes run the other way than those of the formula, which changes the sign of odd orders.
         let sign = if order % 2 == 0 { 1.0 } else { -1.0 };
         let share = if order == 0 { 1.0 } else { 2.0 };
-        *coefficient = sign * share * sum / fraction(NODES);
-    }
-    series
+        std::array::from_fn(|node| {
+            let angle =
+                std::f64::consts::PI * fraction(order) * (fraction(node) + 0.5) / fraction(NODES);
+            sign * share * angle.cos() / fraction(NODES)
+        })
+    })
+});
+
+/// Coefficients of the series through the values at the nodes.
+fn coefficients(values: &[f64; NODES]) -> [f64; NODES] {
+    TO_SERIES.map(|row| {
+        row.iter()
+            .zip(values)
+            .map(|(weight, value)| weight * value)
+            .sum()
+    })
 }
 
 fn derivative(series: &[f64; NODES]) -> [f64; NODES] {
