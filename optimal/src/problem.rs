@@ -3,7 +3,7 @@
 //! An interval of constant jerk has the Bezier points `v + h a / 2` of velocity (between the
 //! velocities of its nodes) and `p + h v / 3`, `p⁺ - h v⁺ / 3` of position. Node velocities lie
 //! between Bezier points of their neighbours, node positions likewise, so these points bound the
-//! motion at every instant. Near the ends of a segment the tube is a capsule, elsewhere a cylinder.
+//! motion at every instant; only where the feedrate changes, the velocity is bounded by itself. Near the ends of a segment the tube is a capsule, elsewhere a cylinder.
 //!
 //! Source: sections 2.2 and 2.3 for the limits; the linearisation in the durations is our own. Not
 //! here: how it is solved, see [`interior`](crate::interior).
@@ -23,6 +23,8 @@ struct Track<const N: usize> {
     tube: Tube<N>,
     corner: Option<Disc<N>>,
     feed: Disc<N>,
+    /// Speed at its end, where the next segment has another feedrate.
+    passing: Option<Disc<N>>,
     /// Whether an axis alone may be slower than the feedrate.
     slow_axis: bool,
     first: usize,
@@ -40,6 +42,7 @@ pub(crate) struct NodeRows<const N: usize> {
     after: InTube<N>,
     before: InTube<N>,
     corner: InDisc<N>,
+    passing: InDisc<N>,
 }
 
 /// Does something with the rows of a node, one point after the other.
@@ -111,7 +114,7 @@ impl<const N: usize> Problem<N> {
         self.tracks.clear();
         self.segment_of.clear();
         for (index, segment) in window.segments.iter().enumerate() {
-            let track = self.track(index, segment, index + 1 == window.segments.len())?;
+            let track = self.track(index, segment, window.segments.get(index + 1))?;
             self.tracks.push(track);
             self.segment_of
                 .extend(std::iter::repeat_n(index, segment.steps));
@@ -133,7 +136,7 @@ impl<const N: usize> Problem<N> {
         &self,
         index: usize,
         segment: &Segment<N>,
-        last: bool,
+        next: Option<&Segment<N>>,
     ) -> Result<Track<N>, WindowDefect> {
         if segment.steps < Segment::<N>::FEWEST_STEPS {
             return Err(WindowDefect::TooFewSteps { segment: index });
@@ -147,6 +150,13 @@ impl<const N: usize> Problem<N> {
         {
             return Err(WindowDefect::NotPositive { segment: index });
         }
+        let speed = |feedrate: f64| Disc {
+            center: Vector::zeros(),
+            by_radius: 1.0 / feedrate,
+            room: 1.0,
+        };
+        let slowest = next.map(|next| segment.feedrate.min(next.feedrate));
+        let fastest = next.map(|next| segment.feedrate.max(next.feedrate));
         Ok(Track {
             tube: Tube {
                 start: segment.start - self.origin,
@@ -156,16 +166,13 @@ impl<const N: usize> Problem<N> {
                 room: 1.0,
                 capsule: true,
             },
-            corner: corner.filter(|_| !last).map(|tolerance| Disc {
+            corner: corner.filter(|_| next.is_some()).map(|tolerance| Disc {
                 center: segment.end - self.origin,
                 by_radius: 1.0 / tolerance,
                 room: 1.0,
             }),
-            feed: Disc {
-                center: Vector::zeros(),
-                by_radius: 1.0 / segment.feedrate,
-                room: 1.0,
-            },
+            feed: speed(segment.feedrate),
+            passing: slowest.filter(|_| slowest < fastest).map(speed),
             slow_axis: self.by_velocity.max() * segment.feedrate > 1.0,
             first: self.segment_of.len(),
             steps: segment.steps,
@@ -268,7 +275,7 @@ impl<const N: usize> Problem<N> {
         for track in &self.tracks {
             let boxes = if track.slow_axis { 3 } else { 2 };
             degree += track.steps * (boxes * 2 * N + 1 + 6);
-            degree += usize::from(track.corner.is_some());
+            degree += usize::from(track.corner.is_some()) + usize::from(track.passing.is_some());
         }
         // The ends have no bound of acceleration but one.
         count(degree - 2 * N)
@@ -402,15 +409,23 @@ impl<const N: usize> Problem<N> {
                 weights: basis.acceleration,
             };
             visit.rows(&mut rows.acceleration, &self.by_acceleration, &still);
-            if let Some(corner) = &track.corner
-                && node == track.first + track.steps
-            {
-                let position = Chain {
-                    order: 0,
-                    weights: basis.position,
-                    ..still
-                };
-                visit.rows(&mut rows.corner, corner, &position);
+            if node == track.first + track.steps {
+                if let Some(corner) = &track.corner {
+                    let position = Chain {
+                        order: 0,
+                        weights: basis.position,
+                        ..still
+                    };
+                    visit.rows(&mut rows.corner, corner, &position);
+                }
+                if let Some(passing) = &track.passing {
+                    let velocity = Chain {
+                        order: 1,
+                        weights: basis.velocity,
+                        ..still
+                    };
+                    visit.rows(&mut rows.passing, passing, &velocity);
+                }
             }
         }
         let position = Chain {

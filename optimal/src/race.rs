@@ -8,7 +8,7 @@
 use crate::event::{Event, Joint};
 use std::collections::VecDeque;
 use toolglide_kinematics::numeric::{JUMP_SLACK, LENGTH_SLACK, TIME_SLACK};
-use toolglide_kinematics::{Piece, Sample};
+use toolglide_kinematics::{Piece, Sample, Serves};
 
 /// Events held of either motion before a stretch is led by one of them: some minutes, and some ten
 /// megabytes.
@@ -345,12 +345,19 @@ impl<const N: usize> Race<N> {
     }
 }
 
-/// A piece cut in two at a joint, if it passes that at the same velocity and keeps it.
+/// A piece cut in two at a joint, if it passes that at the same velocity and keeps it, on that move alone.
 fn halves<const N: usize>(piece: &Piece<N>, joint: &Joint<N>) -> Option<[Piece<N>; 2]> {
     let start = piece.at(0.0);
     let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
     let speed = joint.velocity.norm();
-    if !steady || (start.velocity - joint.velocity).norm() > 0.1 * JUMP_SLACK * speed {
+    let alone = Serves {
+        first: joint.index,
+        last: joint.index,
+    };
+    if !steady
+        || piece.serves() != alone
+        || (start.velocity - joint.velocity).norm() > 0.1 * JUMP_SLACK * speed
+    {
         return None;
     }
     let way = joint.position - start.position;
@@ -360,13 +367,12 @@ fn halves<const N: usize>(piece: &Piece<N>, joint: &Joint<N>) -> Option<[Piece<N
     if !inside || off > 0.1 * LENGTH_SLACK {
         return None;
     }
-    let serves = piece.serves();
     let rest = Sample {
         position: joint.position,
         ..start
     };
     Some([
-        Piece::new(&start, time, joint.position, serves),
-        Piece::new(&rest, piece.duration() - time, piece.end(), serves),
+        Piece::new(&start, time, joint.position, alone),
+        Piece::new(&rest, piece.duration() - time, piece.end(), alone),
     ])
 }

@@ -286,6 +286,29 @@ fn the_middle_of_long_moves_takes_no_windows_and_the_faster_motion_may_change_th
 }
 
 #[test]
+fn feedrates_that_change_at_corners_are_kept_by_windows() {
+    let room = Tolerance::new(0.03).unwrap();
+    let mut path = Toolpath::starting_at(Vector::<2>::zeros()).unwrap();
+    let mut at = Vector::<2>::zeros();
+    for k in 0..60_u32 {
+        let angle = 0.9 * f64::from(k % 4) - 0.7 * f64::from(k % 3);
+        at += Vector::<2>::new(angle.cos(), angle.sin()) * (0.3 + 0.4 * f64::from(k % 5));
+        let feedrate = match k % 6 {
+            0 => Feedrate::RAPID,
+            1 | 2 => Feedrate::new(15.0).unwrap(),
+            _ => Feedrate::new(60.0).unwrap(),
+        };
+        path.push(Move::line_to(at, feedrate, room).unwrap())
+            .unwrap();
+    }
+    let limits = Limits::uniform(500.0, 2500.0, 2e5).unwrap();
+    let (plan, tally) = run(SequentialSolver::new(), &path, limits);
+    let report = verify(&plan, &path, &limits);
+    assert!(report.passes(), "{tally:?} {:#?}", report.examples);
+    assert!(tally.windows > 3 && tally.kept == 0, "{tally:?}");
+}
+
+#[test]
 fn where_a_window_does_not_lead_to_the_middle_of_a_long_move_it_is_reached_from_rest() {
     let points = [
         [0.0, 0.0],

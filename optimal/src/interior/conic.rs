@@ -314,7 +314,7 @@ fn compare<const N: usize>(
             end: corner + way,
             tolerance,
             corner_tolerance: Some(tolerance),
-            feedrate: 90.0,
+            feedrate: if segments.len() % 2 == 0 { 90.0 } else { 40.0 },
             steps: usize::from(*steps),
         });
         durations.push(0.04 + way.norm() / 50.0);

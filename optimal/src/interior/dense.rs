@@ -186,7 +186,7 @@ fn bend() -> (Vec<Segment<2>>, Limits<2>, Vec<f64>) {
             end: Vector::from(points[index + 1]),
             tolerance: 0.02,
             corner_tolerance: Some(0.015),
-            feedrate: 80.0,
+            feedrate: [80.0, 50.0, 80.0][index],
             steps: [10, 8, 9][index],
         })
         .collect();
