@@ -24,6 +24,8 @@ const MOST_WAITING: usize = 10_000;
 pub(crate) struct Compensation {
     axes: [usize; 2],
     normal: usize,
+    /// Whether the lead-in ends on the normal of the move behind it, as for Sinumerik; else on its own.
+    leads_to_normal: bool,
     /// Distance of the tool to the left of the path, mm; negative to the right.
     distance: f64,
     /// Where the moves that are handed on end.
@@ -53,6 +55,7 @@ struct Waiting {
     corner: Flat,
     heights: [f64; 2],
     step: Move<3>,
+    leads_in: bool,
 }
 
 /// What happens where the last move ends.
@@ -70,12 +73,19 @@ impl Compensation {
         Self {
             axes: plane.axes(),
             normal: plane.normal(),
+            leads_to_normal: false,
             distance: if left { radius } else { -radius },
             at,
             state: State::LeadIn,
             waiting: None,
             behind: VecDeque::new(),
         }
+    }
+
+    /// The same compensation, whose lead-in ends on the normal of the move behind it.
+    pub(crate) fn leading_to_normal(mut self) -> Self {
+        self.leads_to_normal = true;
+        self
     }
 
     /// Where the tool is once all moves so far are made.
@@ -177,6 +187,7 @@ impl Compensation {
             corner: programmed.end(),
             heights,
             step,
+            leads_in: self.state == State::LeadIn,
         };
         if self.state == State::LeadIn {
             self.check_lead_in(&step, &programmed)?;
@@ -210,6 +221,11 @@ impl Compensation {
         outgoing: Flat,
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Reason> {
+        if last.leads_in && self.leads_to_normal {
+            last.curve.set_end(next.curve.start());
+            self.hand_on(&last, moves);
+            return Ok(());
+        }
         // A course without length would have no direction, but such moves do not wait.
         let incoming = last.course.tangents().map_or(outgoing, |ends| ends[1]);
         let turn = cross(incoming, outgoing).atan2(dot(incoming, outgoing));

@@ -11,6 +11,7 @@ use crate::place::{Place, Span};
 use crate::reason::Reason;
 use crate::recording::{LONGEST_RECORDING, Recording};
 use crate::subprograms::Rest;
+use crate::tape::Tape;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::sync::Arc;
@@ -66,6 +67,8 @@ pub(crate) struct Flow<R> {
     pub(crate) subroutines: BTreeMap<Label, Arc<Recording>>,
     pub(crate) find: Option<Find>,
     pub(crate) most_steps: u64,
+    /// All lines, where the language jumps between them.
+    pub(crate) tape: Option<Tape>,
     /// The rest of the file, once a subprogram was called.
     pub(crate) rest: Option<Rest>,
     /// The line being run, if it is not the one of the file.
@@ -93,6 +96,7 @@ impl<R: BufRead> Flow<R> {
             subroutines: BTreeMap::new(),
             find: None,
             most_steps,
+            tape: None,
             rest: None,
             current: None,
             steps: 0,
@@ -101,9 +105,10 @@ impl<R: BufRead> Flow<R> {
 
     /// The line being run.
     pub(crate) fn text(&self) -> &[u8] {
-        match &self.current {
-            Some((recording, index)) => recording.line(*index),
-            None => self.lines.text(),
+        match (&self.current, &self.tape) {
+            (Some((recording, index)), _) => recording.line(*index),
+            (None, Some(tape)) => tape.text(),
+            (None, None) => self.lines.text(),
         }
     }
 
@@ -117,16 +122,21 @@ impl<R: BufRead> Flow<R> {
                 }
                 recording.number(*index)
             }
-            None => self.lines.count(),
+            None => self.number(),
         };
         u32::try_from(number).unwrap_or(u32::MAX)
+    }
+
+    /// Number of the line of the file.
+    fn number(&self) -> u64 {
+        self.tape.as_ref().map_or(self.lines.count(), Tape::number)
     }
 
     /// Where a part of the line being run stands.
     pub(crate) fn place(&self, span: Span) -> Place {
         let (file, number) = match &self.current {
             Some((recording, index)) => (&recording.file, recording.number(*index)),
-            None => (&self.file, self.lines.count()),
+            None => (&self.file, self.number()),
         };
         Place::new(file, number, self.text(), span)
     }
@@ -150,7 +160,38 @@ impl<R: BufRead> Flow<R> {
             }
         }
         self.current = None;
-        self.lines.advance()
+        let Some(tape) = &mut self.tape else {
+            return self.lines.advance();
+        };
+        match tape.advance(&mut self.lines)? {
+            Some(true) => self.step().map(|()| true),
+            Some(false) => Ok(true),
+            None => Ok(false),
+        }
+    }
+
+    /// Index of the line being run on the tape.
+    pub(crate) fn tape_index(&self) -> usize {
+        self.tape.as_ref().map_or(0, Tape::index)
+    }
+
+    /// Goes on behind a line of the tape.
+    pub(crate) fn tape_to(&mut self, index: usize) {
+        if let Some(tape) = &mut self.tape {
+            tape.go_to(index);
+        }
+    }
+
+    /// Goes on with a line of the tape.
+    pub(crate) fn tape_back(&mut self, index: usize) {
+        if let Some(tape) = &mut self.tape {
+            tape.go_before(index);
+        }
+    }
+
+    /// The nearest line of the tape before the one being run that `is` the one wanted.
+    pub(crate) fn tape_before(&self, is: impl FnMut(&[u8]) -> bool) -> Option<usize> {
+        self.tape.as_ref().and_then(|tape| tape.before(is))
     }
 
     /// Counts a line that is run again.

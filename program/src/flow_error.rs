@@ -77,6 +77,28 @@ pub enum FlowError {
         /// Where.
         line: u64,
     },
+    /// A jump to a line that is not there.
+    #[error("there is no line {label} to jump to")]
+    NoTarget {
+        /// Its mark or its block number.
+        label: Box<str>,
+    },
+    /// The end of a block that was not begun.
+    #[error("{keyword} without its {opening}")]
+    BlockNotOpen {
+        /// The keyword.
+        keyword: &'static str,
+        /// What would have to stand before it.
+        opening: &'static str,
+    },
+    /// A block without its end.
+    #[error("{keyword} is not closed: {closing} is missing")]
+    BlockNotClosed {
+        /// The keyword.
+        keyword: &'static str,
+        /// What is missing.
+        closing: &'static str,
+    },
     /// A file that should hold a subroutine, but does not.
     #[error("the file of subroutine {label} {message}")]
     BadFile {

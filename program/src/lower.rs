@@ -55,6 +55,8 @@ pub(crate) struct Lowering {
     /// Whether the axis words are those of the tool tip.
     pub(crate) tip: bool,
     pub(crate) compensation: Option<Compensation>,
+    /// Whether compensation begins on the normal of its second move, as for Sinumerik.
+    pub(crate) leads_to_normal: bool,
     pub(crate) nurbs: Option<Nurbs>,
     pub(crate) knot_spline: Option<KnotSpline>,
     /// What the next spline of two offsets continues, if it does.
@@ -85,6 +87,7 @@ impl Lowering {
             rotary: [0.0; 3],
             tip: false,
             compensation: None,
+            leads_to_normal: false,
             nurbs: None,
             knot_spline: None,
             spline_end: None,

@@ -18,7 +18,9 @@ use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
 use crate::sinumerik::Sinumerik;
+use crate::sinumerik_reader::Reader;
 use crate::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
+use crate::tape::Tape;
 use crate::tools::ToolTable;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -115,7 +117,10 @@ impl<R: BufRead> Program<R> {
     /// The same program, in a language of axis words: RS274/NGC, as without this, or Sinumerik.
     #[must_use]
     pub fn in_language(mut self, language: Language) -> Self {
-        self.sinumerik = (language == Language::Sinumerik).then(Sinumerik::default);
+        let jumps = language == Language::Sinumerik;
+        self.sinumerik = jumps.then(Sinumerik::default);
+        self.lowering.leads_to_normal = jumps;
+        self.flow.tape = jumps.then(|| Tape::new(&self.flow.file));
         self
     }
 
@@ -223,7 +228,14 @@ impl<R: BufRead> Program<R> {
             if start.is_some_and(|start| matches!(text[start], b'/' | b'%')) {
                 return check_text(text, 0);
             }
-            sinumerik.read(text, &mut self.block, &mut self.lowering, &mut self.remarks)?;
+            let Some(at) = self.flow.obey_order(&mut self.lowering)? else {
+                self.blocks += 1;
+                return Ok(());
+            };
+            let mut reader = Reader::new(self.flow.text());
+            reader.at = at;
+            let (block, state) = (&mut self.block, &mut self.lowering);
+            sinumerik.read(reader, block, state, &mut self.remarks)?;
             return self.carry_out();
         }
         let text = self.flow.text();

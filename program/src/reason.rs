@@ -95,6 +95,14 @@ pub enum Reason {
         /// The word.
         word: Box<str>,
     },
+    /// A word of a dialect that is known, but not read.
+    #[error("{word} is not supported: {what}")]
+    WordNotSupported {
+        /// The word.
+        word: Box<str>,
+        /// What it stands for.
+        what: &'static str,
+    },
     /// A `G` or `M` number that cannot be a code.
     #[error("{letter} code is {value}, but must be {bound}")]
     NotACode {

@@ -2,28 +2,22 @@
 //!
 //! Source: the programming manual of Sinumerik 840D sl, as post-processors use it: addresses with `=`,
 //! names, `DEF`, frames (`TRANS` `ATRANS` `ROT` `AROT`), `SUPA`, `TRAORI` `TRAFOOF`, `CYCLE832`. Not
-//! here: jumps, conditions, cutter compensation and cycles, which are refused by name.
+//! here: jumps, conditions and loops, see `sinumerik_flow`, and cycles, which are refused by name.
 
 use crate::block::Block;
 use crate::codes::{Distance, PathControl};
-use crate::error::{Fault, Remark};
+use crate::error::{Fault, Notice, Remark};
 use crate::frame::Frame;
 use crate::lexer::Word;
 use crate::lower::Lowering;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
-use crate::sinumerik_value::Reader;
+use crate::sinumerik_reader::Reader;
+use crate::sinumerik_words::{Known, known};
+use crate::tools::ToolTable;
 use std::collections::BTreeMap;
 use toolglide_kinematics::{Tolerance, Vector};
-
-/// Words of no effect on the path: compression, feed-forward, ways of accelerating, orientation.
-const SILENT: [&str; 34] = [
-    "BRISK", "BRISKA", "CFC", "CFIN", "CFTCP", "COMPCAD", "COMPCURV", "COMPOF", "COMPON",
-    "COMPSURF", "CUT2D", "DIAMOF", "DRIVE", "FFWOF", "FFWON", "FGROUP", "FIFOCTRL", "FNORM",
-    "G0FRAME", "KONT", "MSG", "NORM", "ORIAXES", "ORICONIO", "ORIMKS", "ORIVECT", "ORIWKS", "OSOF",
-    "SOFT", "SPATH", "STOPFIFO", "STOPRE", "UPATH", "WALIMON",
-];
 
 /// Tools whose names are remembered.
 const MOST_TOOLS: usize = 1000;
@@ -54,10 +48,10 @@ struct Line<'a> {
 }
 
 impl Sinumerik {
-    /// Reads a line into a block.
+    /// Reads the words of a line into a block.
     pub(crate) fn read(
         &mut self,
-        text: &[u8],
+        mut reader: Reader<'_>,
         block: &mut Block,
         state: &mut Lowering,
         remarks: &mut Vec<Remark>,
@@ -71,7 +65,6 @@ impl Sinumerik {
             offsets: [None; 3],
             dwell: false,
         };
-        let mut reader = Reader::new(text);
         while let Some(start) = reader.next_item()? {
             let name = reader.name();
             match name.as_str() {
@@ -88,6 +81,19 @@ impl Sinumerik {
         line.set_frame()
     }
 
+    /// The number of a tool with a name: that of the table, or one by order that the table has not.
+    fn number_of(&mut self, name: String, table: &ToolTable) -> u32 {
+        if let Some(number) = table.named(&name) {
+            return number;
+        }
+        let next = u32::try_from(self.tools.len()).unwrap_or(0) + 1 + table.largest();
+        if self.tools.len() < MOST_TOOLS {
+            *self.tools.entry(name).or_insert(next)
+        } else {
+            next
+        }
+    }
+
     /// A tool by number or by name.
     fn tool(
         &mut self,
@@ -97,14 +103,7 @@ impl Sinumerik {
     ) -> Result<(), Fault> {
         let quoted = reader.quoted_after_equals();
         let value = match quoted {
-            Some(name) => {
-                let next = u32::try_from(self.tools.len()).unwrap_or(0) + 1;
-                if self.tools.len() < MOST_TOOLS {
-                    f64::from(*self.tools.entry(name).or_insert(next))
-                } else {
-                    f64::from(next)
-                }
-            }
+            Some(name) => f64::from(self.number_of(name, &line.state.tools)),
             None => reader.address_value(line.state, start)?.0,
         };
         line.add(b'T', value, Span::new(start, reader.at))
@@ -130,7 +129,7 @@ impl Line<'_> {
     fn address(&mut self, reader: &mut Reader<'_>, name: &str, start: usize) -> Result<(), Fault> {
         let letter = name.bytes().next().unwrap_or(b'?');
         if matches!(letter, b'R' | b'S' | b'M')
-            && let Some(number) = reader.extension()
+            && let Some(number) = reader.extension(self.state)?
         {
             let value = reader.expression(self.state)?;
             let span = Span::new(start, reader.at);
@@ -150,6 +149,14 @@ impl Line<'_> {
             b'L' | b'P' | b'Q' | b'E' | b'O' | b'U' | b'V' | b'W' => Err(unknown(name, span)),
             b'F' if self.dwell => self.add(b'P', value, span),
             b'M' if (value - 17.0).abs() < 0.5 => self.add(b'M', 2.0, span),
+            // Of these RS274/NGC has a meaning that Sinumerik has not.
+            b'M' if is_foreign(value) => {
+                let reason = Reason::UnknownWord {
+                    word: format!("M{value}").into(),
+                };
+                self.remarks.push((span, Notice::Skipped(reason)));
+                Ok(())
+            }
             _ => {
                 if let (Some(axis), Some(_)) = (axis, self.frame) {
                     self.offsets[axis] = Some(value);
@@ -181,13 +188,19 @@ impl Line<'_> {
         let number = value.round();
         let is = |list: &[f64]| list.iter().any(|&one| (one - number).abs() < 0.5);
         let same = [
-            0.0, 1.0, 2.0, 3.0, 17.0, 18.0, 19.0, 40.0, 53.0, 54.0, 55.0, 56.0, 57.0, 64.0, 90.0,
-            91.0, 93.0, 94.0, 97.0,
+            0.0, 1.0, 2.0, 3.0, 17.0, 18.0, 19.0, 40.0, 41.0, 42.0, 53.0, 54.0, 55.0, 56.0, 57.0,
+            64.0, 90.0, 91.0, 93.0, 94.0, 97.0,
         ];
         if (value - number).abs() > 1e-9 {
             return self.add(b'G', value, span);
         }
-        if is(&[601.0, 602.0, 603.0]) {
+        // Fine ways of stopping, circles around corners, and the language of this page.
+        if is(&[290.0, 450.0, 601.0, 602.0, 603.0]) {
+            return Ok(());
+        }
+        if is(&[500.0]) {
+            self.state.offsets.set_origin(Vector::zeros(), 0.0);
+            self.state.program = self.state.offsets.in_program(self.state.position);
             return Ok(());
         }
         let mapped = if is(&same) {
@@ -245,7 +258,25 @@ impl Line<'_> {
                 }
                 return Ok(());
             }
-            _ if SILENT.contains(&name) => {}
+            "AP" | "RP" if reader.equals_follows() => {
+                let value = reader.expression(self.state)?;
+                let letter = if name == "RP" { b'@' } else { b'^' };
+                return self.add(letter, value, Span::new(start, reader.at));
+            }
+            "RET" => return self.add(b'M', 2.0, span),
+            "SPOS" if reader.equals_follows() => {
+                return reader.expression(self.state).map(|_| ());
+            }
+            "PROC" | "EXTERN" => {
+                reader.skip_line();
+                return Ok(());
+            }
+            "MCALL" if reader.next_item()?.is_none() => return Ok(()),
+            _ if known(name) == Known::Silent => {}
+            _ if let Known::NotRead(what) = known(name) => {
+                let word = name.into();
+                return Err(Fault::new(span, Reason::WordNotSupported { word, what }));
+            }
             _ if reader.equals_follows() => {
                 let value = reader.expression(self.state)?;
                 let lower = name.to_ascii_lowercase();
@@ -351,6 +382,15 @@ impl Line<'_> {
         state.program = state.offsets.in_program(state.position);
         Ok(())
     }
+}
+
+/// Codes of RS274/NGC alone.
+fn is_foreign(value: f64) -> bool {
+    [
+        62.0, 63.0, 64.0, 65.0, 66.0, 67.0, 68.0, 70.0, 71.0, 72.0, 73.0, 98.0, 99.0,
+    ]
+    .iter()
+    .any(|one| (one - value).abs() < 0.5)
 }
 
 fn unknown(word: &str, span: Span) -> Fault {

@@ -1,200 +1,95 @@
-//! Words and values of a line for Sinumerik.
+//! Expressions of Sinumerik.
 //!
-//! Not here: what they mean, see `sinumerik`.
+//! Source: the programming manual of Sinumerik 840D sl: operators bind from the tightest to the loosest as
+//! `NOT`, `* / DIV MOD`, `+ -`, `AND`, `XOR`, `OR`, comparisons. Not here: words, and operators of bits.
 
 use crate::arithmetic_error::ArithmeticError;
-use crate::codes::Distance;
 use crate::error::Fault;
 use crate::lower::Lowering;
-use crate::number::number;
 use crate::place::Span;
 use crate::reason::Reason;
+use crate::sinumerik_reader::Reader;
 
 /// Brackets and signs within each other.
 const DEEPEST: u32 = 64;
 
-/// Reads a line from left to right.
-pub(crate) struct Reader<'a> {
-    line: &'a [u8],
-    pub(crate) at: usize,
-    depth: u32,
-}
+/// Comparisons, longer ones before those that they begin with.
+const COMPARISONS: [&[u8]; 6] = [b"==", b"<>", b">=", b"<=", b">", b"<"];
 
-impl<'a> Reader<'a> {
-    pub(crate) fn new(line: &'a [u8]) -> Self {
-        Self {
-            line,
-            at: 0,
-            depth: 0,
-        }
-    }
-
-    /// Where the next word begins; none at a remark or the end of the line.
-    pub(crate) fn next_item(&mut self) -> Result<Option<usize>, Fault> {
-        self.skip_blanks();
-        match self.peek() {
-            None | Some(b';') => {
-                crate::lexer::check_text(self.line, self.at)?;
-                Ok(None)
-            }
-            Some(_) => Ok(Some(self.at)),
-        }
-    }
-
-    /// The name that begins here, in upper case: one letter before a number or `=`, else all letters,
-    /// digits and `_`.
-    pub(crate) fn name(&mut self) -> String {
-        let rest = &self.line[self.at..];
-        let letters = length(rest, |byte| byte.is_ascii_alphabetic() || byte == b'_');
-        let whole = length(rest, |byte| byte.is_ascii_alphanumeric() || byte == b'_');
-        let length = if letters == 1 && rest[0] != b'_' {
-            1
-        } else if letters == 0 {
-            0
-        } else {
-            whole
-        };
-        let name = String::from_utf8_lossy(&rest[..length]).to_ascii_uppercase();
-        self.at += length;
-        name
-    }
-
-    /// The name behind blanks.
-    pub(crate) fn next_name(&mut self) -> String {
-        self.skip_blanks();
-        let rest = &self.line[self.at..];
-        let whole = length(rest, |byte| byte.is_ascii_alphanumeric() || byte == b'_');
-        let name = String::from_utf8_lossy(&rest[..whole]).to_ascii_uppercase();
-        self.at += whole;
-        name
-    }
-
-    /// Whether a number or `=` follows.
-    pub(crate) fn address_follows(&mut self) -> bool {
-        self.skip_blanks();
-        matches!(self.peek(), Some(b'0'..=b'9' | b'+' | b'-' | b'.' | b'='))
-    }
-
-    /// Takes `=` if it follows.
-    pub(crate) fn equals_follows(&mut self) -> bool {
-        self.skip_blanks();
-        let follows = self.peek() == Some(b'=');
-        self.at += usize::from(follows);
-        follows
-    }
-
-    /// Takes `,` if it follows.
-    pub(crate) fn comma_follows(&mut self) -> bool {
-        self.skip_blanks();
-        let follows = self.peek() == Some(b',');
-        self.at += usize::from(follows);
-        follows
-    }
-
-    /// The number between a letter and `=`, as in `R12=`.
-    pub(crate) fn extension(&mut self) -> Option<u32> {
-        let digits = length(&self.line[self.at..], |byte| byte.is_ascii_digit());
-        let end = self.at + digits;
-        let rest = &self.line[end..];
-        let blanks = length(rest, |byte| matches!(byte, b' ' | b'\t'));
-        if digits == 0 || rest.get(blanks) != Some(&b'=') {
-            return None;
-        }
-        let number = std::str::from_utf8(&self.line[self.at..end])
-            .ok()?
-            .parse()
-            .ok()?;
-        self.at = end + blanks + 1;
-        Some(number)
-    }
-
-    /// A text in quotes behind `=`.
-    pub(crate) fn quoted_after_equals(&mut self) -> Option<String> {
-        let rest = &self.line[self.at..];
-        let blank = |byte| matches!(byte, b' ' | b'\t');
-        let before = length(rest, blank);
-        let rest = rest.get(before..)?.strip_prefix(b"=")?;
-        let between = length(rest, blank);
-        let text = rest.get(between..)?.strip_prefix(b"\"")?;
-        let end = text.iter().position(|&byte| byte == b'"')?;
-        self.at += before + 1 + between + 1 + end + 1;
-        Some(String::from_utf8_lossy(&text[..end]).into_owned())
-    }
-
-    /// The value of an address: a number, or an expression behind `=`; `AC( )` and `IC( )` say that
-    /// it is absolute or incremental.
-    pub(crate) fn address_value(
-        &mut self,
-        state: &Lowering,
-        start: usize,
-    ) -> Result<(f64, Option<Distance>), Fault> {
-        self.skip_blanks();
-        if self.peek() == Some(b'=') {
-            self.at += 1;
-            self.skip_blanks();
-            let here = self.at;
-            let distance = match self.next_name().as_str() {
-                "AC" => Some(Distance::Absolute),
-                "IC" => Some(Distance::Incremental),
-                _ => None,
-            };
-            if distance.is_none() {
-                self.at = here;
-            }
-            return Ok((self.expression(state)?, distance));
-        }
-        match number(self.line, self.at) {
-            Ok((value, end)) if value.is_finite() => {
-                self.at = end;
-                Ok((value, None))
-            }
-            _ => {
-                let letter = self.line.get(start).map_or('?', |&byte| char::from(byte));
-                let span = Span::new(start, start + 1);
-                Err(Fault::new(span, Reason::NumberMissing { letter }))
-            }
-        }
-    }
-
-    /// Values in round brackets, separated by commas; empty places are 0.
-    pub(crate) fn arguments(&mut self, state: &Lowering) -> Result<Vec<f64>, Fault> {
-        let mut list = Vec::new();
-        self.skip_blanks();
-        if self.peek() != Some(b'(') {
-            return Ok(list);
-        }
-        self.at += 1;
-        loop {
-            self.skip_blanks();
-            match self.peek() {
-                Some(b')') => {
-                    self.at += 1;
-                    return Ok(list);
-                }
-                Some(b',') => self.at += 1,
-                _ => list.push(self.expression(state)?),
-            }
-        }
-    }
-
-    /// Passes over a text in round brackets, if one follows.
-    pub(crate) fn skip_brackets(&mut self) {
-        self.skip_blanks();
-        if self.peek() == Some(b'(') {
-            let rest = &self.line[self.at..];
-            let end = rest.iter().rposition(|&byte| byte == b')');
-            self.at += end.map_or(rest.len(), |end| end + 1);
-        }
-    }
-
-    /// Sums of products.
+impl Reader<'_> {
+    /// An expression, as a number: what is true is 1.
     pub(crate) fn expression(&mut self, state: &Lowering) -> Result<f64, Fault> {
         let start = self.at;
+        self.deepen(start)?;
+        let mut value = self.logic(state)?;
+        while let Some(comparison) = self.comparison() {
+            let other = self.logic(state)?;
+            value = f64::from(u8::from(match comparison {
+                b"==" => equal(value, other),
+                b"<>" => !equal(value, other),
+                b">=" => value >= other,
+                b"<=" => value <= other,
+                b">" => value > other,
+                _ => value < other,
+            }));
+        }
+        self.depth -= 1;
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            let function = "an expression";
+            Err(self.fault(start, ArithmeticError::Overflow { function }))
+        }
+    }
+
+    fn deepen(&mut self, start: usize) -> Result<(), Fault> {
         self.depth += 1;
         if self.depth > DEEPEST {
             let bound = DEEPEST;
             return Err(self.fault(start, ArithmeticError::TooDeep { bound }));
         }
+        Ok(())
+    }
+
+    fn comparison(&mut self) -> Option<&'static [u8]> {
+        self.skip_blanks();
+        let rest = self.rest();
+        let found = COMPARISONS
+            .into_iter()
+            .find(|sign| rest.starts_with(sign))?;
+        self.at += found.len();
+        Some(found)
+    }
+
+    /// `AND` before `XOR` before `OR`.
+    fn logic(&mut self, state: &Lowering) -> Result<f64, Fault> {
+        let mut either = self.exclusive(state)?;
+        while self.takes("OR") {
+            let other = self.exclusive(state)?;
+            either = truth(either != 0.0 || other != 0.0);
+        }
+        Ok(either)
+    }
+
+    fn exclusive(&mut self, state: &Lowering) -> Result<f64, Fault> {
+        let mut one = self.both(state)?;
+        while self.takes("XOR") {
+            let other = self.both(state)?;
+            one = truth((one != 0.0) != (other != 0.0));
+        }
+        Ok(one)
+    }
+
+    fn both(&mut self, state: &Lowering) -> Result<f64, Fault> {
+        let mut both = self.sum(state)?;
+        while self.takes("AND") {
+            let other = self.sum(state)?;
+            both = truth(both != 0.0 && other != 0.0);
+        }
+        Ok(both)
+    }
+
+    fn sum(&mut self, state: &Lowering) -> Result<f64, Fault> {
         let mut sum = self.product(state)?;
         loop {
             self.skip_blanks();
@@ -207,15 +102,8 @@ impl<'a> Reader<'a> {
                     self.at += 1;
                     sum -= self.product(state)?;
                 }
-                _ => break,
+                _ => return Ok(sum),
             }
-        }
-        self.depth -= 1;
-        if sum.is_finite() {
-            Ok(sum)
-        } else {
-            let function = "an expression";
-            Err(self.fault(start, ArithmeticError::Overflow { function }))
         }
     }
 
@@ -224,6 +112,14 @@ impl<'a> Reader<'a> {
         loop {
             self.skip_blanks();
             let start = self.at;
+            let divided = |reader: &mut Self| {
+                let divisor = reader.factor(state)?;
+                if divisor == 0.0 {
+                    let (function, value) = ("division by zero", product);
+                    return Err(reader.fault(start, ArithmeticError::Undefined { function, value }));
+                }
+                Ok(divisor)
+            };
             match self.peek() {
                 Some(b'*') => {
                     self.at += 1;
@@ -231,15 +127,12 @@ impl<'a> Reader<'a> {
                 }
                 Some(b'/') => {
                     self.at += 1;
-                    let divisor = self.factor(state)?;
-                    if divisor == 0.0 {
-                        let (function, value) = ("division by zero", product);
-                        return Err(
-                            self.fault(start, ArithmeticError::Undefined { function, value })
-                        );
-                    }
-                    product /= divisor;
+                    product /= divided(self)?;
                 }
+                Some(b'D' | b'd') if self.takes("DIV") => {
+                    product = (product / divided(self)?).trunc();
+                }
+                Some(b'M' | b'm') if self.takes("MOD") => product %= divided(self)?,
                 _ => return Ok(product),
             }
         }
@@ -252,39 +145,61 @@ impl<'a> Reader<'a> {
             Some(b'(') => {
                 self.at += 1;
                 let value = self.expression(state)?;
-                self.skip_blanks();
-                if self.peek() != Some(b')') {
-                    return Err(self.fault(start, ArithmeticError::NotClosed));
-                }
-                self.at += 1;
+                self.close(start)?;
                 Ok(value)
             }
             Some(sign @ (b'+' | b'-')) => {
                 self.at += 1;
-                self.depth += 1;
-                if self.depth > DEEPEST {
-                    let bound = DEEPEST;
-                    return Err(self.fault(start, ArithmeticError::TooDeep { bound }));
-                }
+                self.deepen(start)?;
                 let value = self.factor(state)?;
                 self.depth -= 1;
                 Ok(if sign == b'-' { -value } else { value })
             }
-            Some(b'0'..=b'9' | b'.') => match number(self.line, self.at) {
-                Ok((value, end)) => {
-                    self.at = end;
-                    Ok(value)
-                }
-                Err(_) => Err(self.fault(start, ArithmeticError::ValueMissing)),
-            },
-            Some(byte) if byte.is_ascii_alphabetic() || byte == b'_' => self.named(state, start),
+            Some(b'0'..=b'9' | b'.') => self
+                .plain_number()
+                .ok_or_else(|| self.fault(start, ArithmeticError::ValueMissing)),
+            Some(byte) if byte.is_ascii_alphabetic() || b"_$".contains(&byte) => {
+                self.named(state, start)
+            }
             _ => Err(self.fault(start, ArithmeticError::ValueMissing)),
         }
     }
 
-    /// A variable or a function.
+    fn close(&mut self, start: usize) -> Result<(), Fault> {
+        self.skip_blanks();
+        if self.peek() != Some(b')') {
+            return Err(self.fault(start, ArithmeticError::NotClosed));
+        }
+        self.at += 1;
+        Ok(())
+    }
+
+    /// A variable, a function, or `NOT`.
     fn named(&mut self, state: &Lowering, start: usize) -> Result<f64, Fault> {
-        let name = self.next_name();
+        let mut name = self.next_name();
+        match name.as_str() {
+            "TRUE" => return Ok(1.0),
+            "FALSE" => return Ok(0.0),
+            "NOT" => {
+                self.deepen(start)?;
+                let value = self.factor(state)?;
+                self.depth -= 1;
+                return Ok(truth(value == 0.0));
+            }
+            name if name.starts_with('$') => {
+                let what = "variables of the system";
+                let reason = Reason::WordNotSupported {
+                    word: name.into(),
+                    what,
+                };
+                return Err(Fault::new(Span::new(start, self.at), reason));
+            }
+            "R" if self.peek() == Some(b'[') => {
+                let number = self.parameter_number(state)?.unwrap_or(0);
+                name = format!("R{number}");
+            }
+            _ => {}
+        }
         self.skip_blanks();
         if self.peek() != Some(b'(') {
             let name = name.to_ascii_lowercase();
@@ -296,18 +211,30 @@ impl<'a> Reader<'a> {
         self.at += 1;
         let value = self.expression(state)?;
         self.skip_blanks();
-        if self.peek() != Some(b')') {
-            return Err(self.fault(start, ArithmeticError::NotClosed));
-        }
-        self.at += 1;
-        let result = match name.as_str() {
-            "SIN" => value.to_radians().sin(),
-            "COS" => value.to_radians().cos(),
-            "TAN" => value.to_radians().tan(),
-            "SQRT" => value.sqrt(),
-            "ABS" => value.abs(),
-            "TRUNC" => value.trunc(),
-            "ROUND" => value.round(),
+        let second = if self.peek() == Some(b',') {
+            self.at += 1;
+            Some(self.expression(state)?)
+        } else {
+            None
+        };
+        self.close(start)?;
+        let result = match (name.as_str(), second) {
+            ("SIN", None) => value.to_radians().sin(),
+            ("COS", None) => value.to_radians().cos(),
+            ("TAN", None) => value.to_radians().tan(),
+            ("ASIN", None) => value.asin().to_degrees(),
+            ("ACOS", None) => value.acos().to_degrees(),
+            ("ATAN2", Some(other)) => value.atan2(other).to_degrees(),
+            ("SQRT", None) => value.sqrt(),
+            ("POT", None) => value * value,
+            ("ABS", None) => value.abs(),
+            ("TRUNC", None) => value.trunc(),
+            ("ROUND", None) => value.round(),
+            ("ROUNDUP", None) => value.ceil(),
+            ("LN", None) => value.ln(),
+            ("EXP", None) => value.exp(),
+            ("MINVAL", Some(other)) => value.min(other),
+            ("MAXVAL", Some(other)) => value.max(other),
             _ => {
                 let word = name.into();
                 let span = Span::new(start, self.at);
@@ -321,36 +248,13 @@ impl<'a> Reader<'a> {
             Err(self.fault(start, ArithmeticError::Undefined { function, value }))
         }
     }
-
-    /// A refusal of what begins no word.
-    pub(crate) fn stray(&self, start: usize) -> Fault {
-        let text = String::from_utf8_lossy(&self.line[start.min(self.line.len())..]);
-        let character = text.chars().next().unwrap_or(char::REPLACEMENT_CHARACTER);
-        let span = Span::new(start, start + character.len_utf8());
-        match self.line.get(start) {
-            Some(&byte) if byte < b' ' => Fault::new(span, Reason::ControlByte { byte }),
-            _ => Fault::new(span, Reason::BadCharacter { character }),
-        }
-    }
-
-    fn skip_blanks(&mut self) {
-        while let Some(b' ' | b'\t') = self.peek() {
-            self.at += 1;
-        }
-    }
-
-    fn peek(&self) -> Option<u8> {
-        self.line.get(self.at).copied()
-    }
-
-    fn fault(&self, start: usize, reason: ArithmeticError) -> Fault {
-        Fault::new(Span::new(start, self.at.max(start + 1)), reason.into())
-    }
 }
 
-/// How many bytes at the beginning pass.
-fn length(text: &[u8], pass: impl Fn(u8) -> bool) -> usize {
-    text.iter()
-        .position(|&byte| !pass(byte))
-        .unwrap_or(text.len())
+/// Values are the same if nothing but the rounding of floats lies between them.
+fn equal(one: f64, other: f64) -> bool {
+    (one - other).abs() <= f64::EPSILON * one.abs().max(other.abs())
+}
+
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
 }

@@ -202,7 +202,12 @@ impl Lowering {
             .compensation
             .take()
             .map_or(self.position, |on| on.position());
-        self.compensation = Some(Compensation::new(self.modal.plane, radius, left, at));
+        let compensation = Compensation::new(self.modal.plane, radius, left, at);
+        self.compensation = Some(if self.leads_to_normal {
+            compensation.leading_to_normal()
+        } else {
+            compensation
+        });
         Ok(())
     }
 }

@@ -24,6 +24,8 @@ pub struct Tool {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ToolTable {
     tools: BTreeMap<u32, Tool>,
+    /// Numbers by remarks in upper case, which may be names.
+    names: BTreeMap<String, u32>,
 }
 
 /// Why a tool table is refused.
@@ -66,6 +68,10 @@ impl ToolTable {
                 problem,
             };
             let (tool, entry) = entry(words).map_err(refuse)?;
+            if let Some((_, name)) = line.split_once(';') {
+                let name = name.trim().to_ascii_uppercase();
+                table.names.entry(name).or_insert(tool);
+            }
             if table.tools.insert(tool, entry).is_some() {
                 return Err(refuse(format!("tool {tool} stands twice")));
             }
@@ -77,6 +83,17 @@ impl ToolTable {
     #[must_use]
     pub fn get(&self, number: u32) -> Option<Tool> {
         self.tools.get(&number).copied()
+    }
+
+    /// The number of the tool whose remark is a name, in whatever case; the first one if several have it.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<u32> {
+        self.names.get(&name.to_ascii_uppercase()).copied()
+    }
+
+    /// Largest number of a tool, 0 where there is none.
+    pub(crate) fn largest(&self) -> u32 {
+        self.tools.keys().next_back().copied().unwrap_or(0)
     }
 
     /// Adds or replaces a tool.

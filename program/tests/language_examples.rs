@@ -53,11 +53,17 @@ fn programs_of_straight_axes_are_read_strictly() {
 
 #[test]
 fn programs_of_rotary_axes_are_read_as_poses() {
-    for (file, expected) in [("tilted.ngc", 59), ("blade.apt", 61), ("swivel.mpf", 246)] {
+    for (file, expected) in [
+        ("tilted.ngc", 59),
+        ("blade.apt", 61),
+        ("swivel.mpf", 246),
+        ("loops.mpf", 314),
+    ] {
         let text = text(file);
         let path = PathBuf::from(file);
         let language = Language::of(&path, text.as_bytes());
-        let poses = Poses::new(text.as_bytes(), file, settings(), language);
+        let tools = ToolTable::parse(&self::text("tools.tbl")).unwrap();
+        let poses = Poses::new(text.as_bytes(), file, settings(), language).with_tools(tools);
         let read: Result<Vec<_>, _> = poses.collect();
         let count = read.unwrap_or_else(|error| panic!("{error}")).len();
         assert_eq!(count, expected, "{file}");

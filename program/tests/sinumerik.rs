@@ -1,6 +1,11 @@
 //! The first cut of the language of Sinumerik 840D.
 
-#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::float_cmp,
+    reason = "a failed unwrap is a failed test, and values are small whole numbers"
+)]
 
 mod common;
 
@@ -131,11 +136,11 @@ fn what_is_not_read_is_refused_at_its_place() {
     for (text, expected) in [
         (
             "G0 X1\n  GOTOF ENDE",
-            "part.ngc:2:3: GOTOF is not supported in this dialect",
+            "part.ngc:2:9: there is no line ENDE to jump to",
         ),
         (
-            "G41 X1",
-            "part.ngc:1:1: G41 is not supported in this dialect",
+            "G43 X1",
+            "part.ngc:1:1: G43 is not supported in this dialect",
         ),
         (
             "X=_NO",
@@ -157,5 +162,174 @@ fn what_is_not_read_is_refused_at_its_place() {
     ] {
         let shown = try_read(text).unwrap_err().to_string();
         assert_eq!(shown, expected, "{text:?}");
+    }
+}
+
+#[test]
+fn blocks_run_as_their_conditions_say() {
+    let text = "DEF INT A=2\nIF A==1\nG0 X1\nELSE\nIF (A>1) AND NOT (A>=3)\nX2\nENDIF\nX3\nENDIF\n\
+                IF A<>2\nX4\nENDIF\nX5\n";
+    let text = text.replacen("X2", "G0 X2", 1);
+    assert_ends(&text, &[[2.0, 0.0, 0.0], [3.0, 0.0, 0.0], [5.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn loops_run_as_often_as_they_should() {
+    let x = |text: &str| -> Vec<f64> { ends(text).iter().map(|end| end[0]).collect() };
+    let counted = "DEF INT I\nFOR I = 1 TO 3\nG0 X=I\nENDFOR\nX=I*10\n";
+    assert_eq!(x(counted), [1.0, 2.0, 3.0, 40.0], "FOR");
+    assert_eq!(
+        x("DEF INT I\nFOR I=2 TO 1\nG0 X1\nENDFOR\nG0 X9\n"),
+        [9.0],
+        "no turn"
+    );
+    let nested =
+        "R1=0\nWHILE R1<2\nR1=R1+1 R2=0\nREPEAT\nR2=R2+1\nG0 X=R1*10+R2\nUNTIL R2==2\nENDWHILE\n";
+    assert_eq!(x(nested), [11.0, 12.0, 21.0, 22.0], "WHILE and REPEAT");
+    let endless = "R1=0\nLOOP\nR1=R1+1\nG0 X=R1\nIF R1>=3 GOTOF OUT\nENDLOOP\nOUT: X9\n";
+    assert_eq!(x(endless), [1.0, 2.0, 3.0, 9.0], "LOOP, left by a jump");
+    let twice = "R2=0\nAGAIN: R2=R2+1\nDEF INT I\nFOR I=1 TO 2\nG0 X=R2*10+I\nENDFOR\nIF R2<2 GOTOB AGAIN\n";
+    assert_eq!(
+        x(twice),
+        [11.0, 12.0, 21.0, 22.0],
+        "a loop in a loop of jumps"
+    );
+}
+
+#[test]
+fn jumps_find_marks_and_block_numbers() {
+    let x = |text: &str| -> Vec<f64> { ends(text).iter().map(|end| end[0]).collect() };
+    assert_eq!(
+        x("N10 G0 X1\nGOTOF N040\nN30 X3\nN40 X4\n"),
+        [1.0, 4.0],
+        "number"
+    );
+    let text = "R1=0\nN10 UP_1: G0 X=R1\nR1=R1+1\nIF R1<3 GOTOB up_1\nM30\n";
+    assert_eq!(x(text), [0.0, 1.0, 2.0], "back, words behind the mark");
+    let both = "GOTO THERE\nHERE: G0 X2\nM30\nTHERE: G0 X1\nGOTO HERE\n";
+    assert_eq!(x(both), [1.0, 2.0], "either way");
+    let chain = "R1=2\nIF R1==1 GOTOF ONE IF R1==2 GOTOF TWO\nG0 X0\nONE: G0 X1\nTWO: G0 X2\n";
+    assert_eq!(x(chain), [2.0], "one of several");
+    assert_eq!(x("GOTOC NOWHERE\nG0 X1\n"), [1.0], "GOTOC goes on");
+}
+
+#[test]
+fn expressions_know_functions_comparisons_and_parameters_by_index() {
+    let x = |text: &str| ends(&format!("R1=3 R[2]=4\nG0 X={text}\n"))[0][0];
+    for (text, expected) in [
+        ("R[R1-1]+R1", 7.0),
+        ("7 DIV 2 + 7 MOD 4", 6.0),
+        ("ATAN2(30,80)", 20.556_045_219_583_467),
+        ("ASIN(0.5)+ACOS(0.5)", 90.0),
+        ("POT(R1)+SQRT(R[2])", 11.0),
+        (
+            "MINVAL(3,2)+MAXVAL(3,2)+TRUNC(2.7)+ROUND(2.5)+ROUNDUP(2.1)",
+            13.0,
+        ),
+        ("LN(EXP(2))", 2.0),
+        ("(R1==3)+(R1<2)+TRUE-FALSE", 2.0),
+        ("1==1 AND 0", 0.0),
+        ("(1==1) XOR (2==2) OR NOT 0", 1.0),
+    ] {
+        assert!((x(text) - expected).abs() < CLOSE, "{text}: {}", x(text));
+    }
+}
+
+#[test]
+fn compensation_begins_on_the_normal_of_the_contour() {
+    use toolglide_program::{Tool, ToolTable};
+    let mut tools = ToolTable::parse("T3 P1 Z10 D6 ;mill_6\n").unwrap();
+    assert_eq!(tools.named("MILL_6"), Some(3), "by its remark");
+    let read = |text: &str, tools: ToolTable| {
+        Poses::new(text.as_bytes(), FILE, settings(), Language::Sinumerik)
+            .with_tools(tools)
+            .map(|step| match step.map(|step| *step.end()) {
+                Ok(PoseEnd::Axes { linear, .. }) => [linear[0], linear[1]],
+                other => panic!("{other:?}"),
+            })
+            .collect::<Vec<_>>()
+    };
+    let text = "T=\"MILL_6\" M6 D1\nG0 X-20 Y-10\nG41 G1 X0 Y0 F600\nX0 Y30\nG40 X-20\nM30\n";
+    let expected = [[-20.0, -10.0], [-3.0, 0.0], [-3.0, 30.0], [-20.0, 30.0]];
+    let close = |found: Vec<[f64; 2]>, expected: &[[f64; 2]]| {
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (one, other) in found.iter().zip(expected) {
+            let off = (one[0] - other[0]).hypot(one[1] - other[1]);
+            assert!(off < CLOSE, "{found:?}");
+        }
+    };
+    close(read(text, tools.clone()), &expected);
+    let (offset, diameter) = (Vector::zeros(), 2.0);
+    tools.set(7, Tool { offset, diameter });
+    let by_number = text.replace("T=\"MILL_6\"", "T7");
+    close(
+        read(&by_number, tools),
+        &[[-20.0, -10.0], [-1.0, 0.0], [-1.0, 30.0], [-20.0, 30.0]],
+    );
+}
+
+#[test]
+fn polar_words_and_words_without_effect_are_read() {
+    assert_ends(
+        "WORKPIECE(,,,\"BOX\",112,0,-20,-80,0,0,100,100)\nG290 G450 G500 DYNFINISH\nG0 RP=5 AP=90\nSPOS=30\nPROC A(INT B)\nMCALL\nRET\nG0 X9\n",
+        &[[0.0, 5.0, 0.0]],
+    );
+}
+
+#[test]
+fn what_is_known_but_not_read_is_refused_with_its_kind() {
+    for (text, expected) in [
+        (
+            "G0 X1\nCYCLE83(5,0,1,-10)",
+            "2:1: CYCLE83 is not supported: cycles",
+        ),
+        (
+            "MCALL CYCLE81(1,2)",
+            "1:1: MCALL is not supported: calls of subprograms",
+        ),
+        (
+            "G1 X1 RND=2 F9",
+            "1:7: RND is not supported: rounding between blocks",
+        ),
+        (
+            "R1=$AA_IM[X]",
+            "1:4: $AA_IM is not supported: variables of the system",
+        ),
+        (
+            "$P_UIFR[1]=0",
+            "1:1: $P_UIFR is not supported: variables of the system",
+        ),
+        ("MIRROR X0", "1:1: MIRROR is not supported: mirrored frames"),
+        ("G451", "1:1: G451 is not supported in this dialect"),
+        ("GOTOF OUT", "1:7: there is no line OUT to jump to"),
+        (
+            "WHILE 1==1\nG0 X1",
+            "1:1: WHILE is not closed: ENDWHILE is missing",
+        ),
+        ("G0 X1\nENDFOR", "2:1: ENDFOR without its FOR"),
+        (
+            "IF 1==1 X5\nENDIF",
+            "1:9: X5 is not supported in this dialect",
+        ),
+        ("FOR I=1 X 2\nENDFOR", "1:8: character 'X' begins no word"),
+        ("ELSE", "1:1: IF is not closed: ENDIF is missing"),
+    ] {
+        let refused = try_read(text).unwrap_err().to_string();
+        assert_eq!(refused, format!("{FILE}:{expected}"), "{text:?}");
+    }
+}
+
+#[test]
+fn a_loop_without_end_ends_with_an_error() {
+    let mut few = settings();
+    few.steps = 1000;
+    for text in ["LOOP\nENDLOOP\n", "A1: G4 F0\nGOTOB A1\n"] {
+        let text = text.replace("A1", "AGAIN");
+        let mut poses = Poses::new(text.as_bytes(), FILE, few, Language::Sinumerik);
+        let refused = poses.find_map(Result::err).expect("an end");
+        assert!(
+            refused.to_string().contains("more than 1000 lines"),
+            "{refused}"
+        );
     }
 }

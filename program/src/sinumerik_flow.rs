@@ -1,0 +1,386 @@
+//! Jumps, conditions and loops of Sinumerik.
+//!
+//! Source: the programming manual of Sinumerik 840D sl: `GOTOF` `GOTOB` `GOTO` `GOTOC`, `IF`, `WHILE`, `FOR`,
+//! `LOOP`, `REPEAT`. Nothing is remembered of a loop but its lines, so that jumps out of it do no harm. Not
+//! here: words that are not about the order of lines.
+
+use crate::error::Fault;
+use crate::flow::Flow;
+use crate::flow_error::FlowError;
+use crate::lower::Lowering;
+use crate::place::Span;
+use crate::reason::Reason;
+use crate::sinumerik_reader::Reader;
+use crate::tape::Tape;
+use std::io::BufRead;
+
+/// Words about the order of lines that stand first.
+const ORDERS: [&str; 15] = [
+    "IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "FOR", "ENDFOR", "LOOP", "ENDLOOP", "REPEAT",
+    "UNTIL", "GOTOF", "GOTOB", "GOTO", "GOTOC",
+];
+
+/// How a line begins.
+struct Beginning {
+    /// Its jump mark, in upper case.
+    label: Option<String>,
+    /// Its number behind `N`.
+    number: Option<String>,
+    /// The word about the order of lines, if it is one.
+    order: Option<&'static str>,
+    /// Where that word, or the first other one, stands, and where it ends.
+    start: usize,
+    end: usize,
+}
+
+impl Beginning {
+    fn of(line: &[u8]) -> Self {
+        let mut reader = Reader::new(line);
+        let mut number = None;
+        reader.skip_blanks();
+        if matches!(reader.peek(), Some(b'N' | b'n')) {
+            let start = reader.at;
+            let name = reader.next_name();
+            if name.len() > 1 && name[1..].bytes().all(|byte| byte.is_ascii_digit()) {
+                number = Some(name[1..].trim_start_matches('0').to_owned());
+            } else {
+                reader.at = start;
+            }
+        }
+        reader.skip_blanks();
+        let mut start = reader.at;
+        let mut name = reader.next_name();
+        let mut label = None;
+        if name.len() > 1 && reader.peek() == Some(b':') {
+            reader.at += 1;
+            label = Some(name);
+            reader.skip_blanks();
+            start = reader.at;
+            name = reader.next_name();
+        }
+        let order = ORDERS.into_iter().find(|order| *order == name);
+        Self {
+            label,
+            number,
+            order,
+            start,
+            end: reader.at,
+        }
+    }
+
+    fn is(&self, target: &str) -> bool {
+        let numbered = target.strip_prefix('N');
+        let number = numbered.map(|digits| digits.trim_start_matches('0'));
+        self.label.as_deref() == Some(target)
+            || number.is_some() && self.number.as_deref() == number
+    }
+}
+
+/// The order of a line, with `IF` only where it begins a block.
+fn order(line: &[u8]) -> Option<&'static str> {
+    let beginning = Beginning::of(line);
+    let order = beginning.order?;
+    if order == "IF" {
+        let rest = line.get(beginning.end..).unwrap_or_default();
+        let rest = rest.split(|&byte| byte == b';').next().unwrap_or_default();
+        let jumps = rest
+            .windows(4)
+            .any(|word| word.eq_ignore_ascii_case(b"GOTO"));
+        return (!jumps).then_some(order);
+    }
+    Some(order)
+}
+
+impl<R: BufRead> Flow<R> {
+    /// Obeys the line being run if it is about the order of lines; else where its words begin.
+    pub(crate) fn obey_order(&mut self, state: &mut Lowering) -> Result<Option<usize>, Fault> {
+        let beginning = Beginning::of(self.text());
+        let Some(order) = beginning.order else {
+            return Ok(Some(beginning.start));
+        };
+        let line = self.text().to_vec();
+        let span = Span::new(beginning.start, beginning.end);
+        let mut reader = Reader::new(&line);
+        reader.at = beginning.end;
+        if let Some(opening @ ("IF" | "WHILE" | "FOR" | "LOOP" | "REPEAT")) = self::order(&line) {
+            self.expect_end(span, opening)?;
+        }
+        match order {
+            "IF" => self.if_order(&mut reader, span, state)?,
+            "ELSE" => {
+                self.skip_order(span, "IF", &["ENDIF"], "ENDIF")?;
+            }
+            "WHILE" => {
+                let holds = condition(&mut reader, state)?;
+                if !holds {
+                    self.skip_order(span, "WHILE", &["ENDWHILE"], "ENDWHILE")?;
+                }
+            }
+            "FOR" => self.for_order(&mut reader, span, state, false)?,
+            "ENDWHILE" => {
+                let head = self.head(span, order, "WHILE")?;
+                // The head is run again.
+                self.tape_back(head);
+            }
+            "ENDLOOP" => {
+                let head = self.head(span, order, "LOOP")?;
+                self.tape_to(head);
+            }
+            "UNTIL" => {
+                let holds = condition(&mut reader, state)?;
+                let head = self.head(span, order, "REPEAT")?;
+                if !holds {
+                    self.tape_to(head);
+                }
+            }
+            "ENDFOR" => {
+                let head = self.head(span, order, "FOR")?;
+                let foot = self.tape_index();
+                self.tape_to(head);
+                let line = self.text().to_vec();
+                let beginning = Beginning::of(&line);
+                let mut reader = Reader::new(&line);
+                reader.at = beginning.end;
+                let span = Span::new(beginning.start, beginning.end);
+                self.for_order(&mut reader, span, state, true)?;
+                if self.tape_index() != head {
+                    self.tape_to(foot);
+                }
+            }
+            "GOTOF" | "GOTOB" | "GOTO" | "GOTOC" => self.jump(&mut reader, span, order)?,
+            // LOOP, REPEAT and ENDIF say where a block begins or ends, and nothing else.
+            _ => {}
+        }
+        Ok(None)
+    }
+
+    /// `IF` before a jump, or before a block.
+    fn if_order(
+        &mut self,
+        reader: &mut Reader<'_>,
+        span: Span,
+        state: &Lowering,
+    ) -> Result<(), Fault> {
+        loop {
+            let holds = reader.expression(state)? != 0.0;
+            let start = reader.next_item()?.unwrap_or(reader.at);
+            let name = reader.next_name();
+            match name.as_str() {
+                "" => {
+                    if reader.next_item()?.is_some() {
+                        return Err(reader.stray(start));
+                    }
+                    if !holds {
+                        self.skip_order(span, "IF", &["ELSE", "ENDIF"], "ENDIF")?;
+                    }
+                    return Ok(());
+                }
+                "GOTOF" | "GOTOB" | "GOTO" | "GOTOC" if holds => {
+                    return self.jump(reader, Span::new(start, reader.at), &name);
+                }
+                "GOTOF" | "GOTOB" | "GOTO" | "GOTOC" => {
+                    reader.next_name();
+                    if reader.next_item()?.is_none() {
+                        return Ok(());
+                    }
+                    let next = reader.at;
+                    if !reader.takes("IF") {
+                        return Err(reader.stray(next));
+                    }
+                }
+                _ => {
+                    let word = name.into();
+                    let span = Span::new(start, reader.at);
+                    return Err(Fault::new(span, Reason::UnknownWord { word }));
+                }
+            }
+        }
+    }
+
+    /// `FOR name = first TO last`: at its beginning, or once more at its end.
+    fn for_order(
+        &mut self,
+        reader: &mut Reader<'_>,
+        span: Span,
+        state: &mut Lowering,
+        again: bool,
+    ) -> Result<(), Fault> {
+        let start = reader.at;
+        let name = reader.next_name().to_ascii_lowercase();
+        if name.is_empty() || !reader.equals_follows() {
+            return Err(reader.stray(reader.at.min(start + 1)));
+        }
+        let named = Span::new(start, reader.at);
+        let first = reader.expression(state)?;
+        let to = reader.at;
+        if !reader.takes("TO") {
+            return Err(reader.stray(to));
+        }
+        let last = reader.expression(state)?;
+        let value = if again {
+            state.parameters.get_named(&name).unwrap_or(first) + 1.0
+        } else {
+            first
+        };
+        state
+            .parameters
+            .set_named(&name, value)
+            .map_err(|reason| Fault::new(named, reason.into()))?;
+        if value > last {
+            self.skip_order(span, "FOR", &["ENDFOR"], "ENDFOR")?;
+        }
+        Ok(())
+    }
+
+    /// Jumps to a mark or a block number.
+    fn jump(&mut self, reader: &mut Reader<'_>, span: Span, order: &str) -> Result<(), Fault> {
+        reader.skip_blanks();
+        let start = reader.at;
+        let target = reader.next_name();
+        let span = Span::new(
+            if target.is_empty() {
+                span.start as usize
+            } else {
+                start
+            },
+            reader.at,
+        );
+        let here = self.tape_index();
+        let is = |line: &[u8]| Beginning::of(line).is(&target);
+        if order != "GOTOB" {
+            if self
+                .seek(|line| is(line).then_some(()))
+                .map_err(|reason| Fault::new(span, reason))?
+                .is_some()
+            {
+                // The mark may stand before words of its own.
+                let found = self.tape_index();
+                self.tape_back(found);
+                return Ok(());
+            }
+            self.tape_to(here);
+        }
+        let before = match order {
+            "GOTOF" => None,
+            _ => self.tape_before(is),
+        };
+        match (before, order) {
+            (Some(index), _) => self.tape_back(index),
+            (None, "GOTOC") => {}
+            (None, _) => {
+                let label = target.into();
+                return Err(Fault::new(span, FlowError::NoTarget { label }.into()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Passes over lines until one of `ends` at the depth of the line being run.
+    fn skip_order(
+        &mut self,
+        span: Span,
+        opening: &'static str,
+        ends: &[&str],
+        closing: &'static str,
+    ) -> Result<(), Fault> {
+        let here = self.tape_index();
+        let mut depth = 0_u32;
+        let found = self.seek(|line| {
+            let met = order(line)?;
+            if met == opening {
+                depth += 1;
+            } else if depth == 0 && ends.contains(&met) {
+                return Some(());
+            } else if met == closing {
+                depth -= 1;
+            }
+            None
+        });
+        if found.map_err(|reason| Fault::new(span, reason))?.is_none() {
+            self.tape_to(here);
+            let keyword = opening;
+            return Err(Fault::new(
+                span,
+                FlowError::BlockNotClosed { keyword, closing }.into(),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Index of the head of the loop that the line being run ends.
+    fn head(
+        &self,
+        span: Span,
+        keyword: &'static str,
+        opening: &'static str,
+    ) -> Result<usize, Fault> {
+        let mut depth = 0_u32;
+        let found = self.tape_before(|line| match order(line) {
+            Some(met) if met == keyword => {
+                depth += 1;
+                false
+            }
+            Some(met) if met == opening && depth > 0 => {
+                depth -= 1;
+                false
+            }
+            met => met == Some(opening),
+        });
+        let reason = FlowError::BlockNotOpen { keyword, opening };
+        found.ok_or_else(|| Fault::new(span, reason.into()))
+    }
+
+    /// Goes on until a line gives something; none at the end of the program.
+    fn seek<T>(&mut self, mut is: impl FnMut(&[u8]) -> Option<T>) -> Result<Option<T>, Reason> {
+        self.look(true);
+        let mut found = Ok(None);
+        loop {
+            match self.advance() {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(reason) => {
+                    found = Err(reason);
+                    break;
+                }
+            }
+            if let Some(met) = is(self.text()) {
+                found = Ok(Some(met));
+                break;
+            }
+        }
+        self.look(false);
+        found
+    }
+
+    fn look(&mut self, looking: bool) {
+        if let Some(tape) = &mut self.tape {
+            tape.looking = looking;
+        }
+    }
+
+    /// Refuses a block without its end, when it is met for the first time.
+    fn expect_end(&mut self, span: Span, opening: &'static str) -> Result<(), Fault> {
+        let closing = match opening {
+            "IF" => "ENDIF",
+            "WHILE" => "ENDWHILE",
+            "FOR" => "ENDFOR",
+            "LOOP" => "ENDLOOP",
+            _ => "UNTIL",
+        };
+        if self.tape.as_ref().is_some_and(Tape::at_front) {
+            let here = self.tape_index();
+            self.skip_order(span, opening, &[closing], closing)?;
+            self.tape_to(here);
+        }
+        Ok(())
+    }
+}
+
+/// A condition with nothing behind it.
+fn condition(reader: &mut Reader<'_>, state: &Lowering) -> Result<bool, Fault> {
+    let value = reader.expression(state)?;
+    match reader.next_item()? {
+        None => Ok(value != 0.0),
+        Some(at) => Err(reader.stray(at)),
+    }
+}
