@@ -311,7 +311,7 @@ fn what_is_known_but_not_read_is_refused_with_its_kind() {
             "IF 1==1 X5\nENDIF",
             "1:9: X5 is not supported in this dialect",
         ),
-        ("FOR I=1 X 2\nENDFOR", "1:8: character 'X' begins no word"),
+        ("FOR I=1 X 2\nENDFOR", "1:9: character 'X' begins no word"),
         ("ELSE", "1:1: IF is not closed: ENDIF is missing"),
     ] {
         let refused = try_read(text).unwrap_err().to_string();
