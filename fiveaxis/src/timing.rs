@@ -33,6 +33,12 @@ pub(crate) fn corners(blocks: &[PoseBlock]) -> Vec<PoseCorner> {
     corners
 }
 
+/// Whether a block is the next part of the same move, so that nothing stops, slows down or leaves its path
+/// between them.
+pub(crate) fn goes_on(before: &PoseBlock, after: &PoseBlock) -> bool {
+    before.leg == after.leg
+}
+
 /// Steps of all blocks, from time 0 on. Every corner is taken as gently as its scale says, from 1 down
 /// to 0; blocks may be slowed down where many corners are close. Overlaps stay as they were where no
 /// block and no corner has changed.
@@ -46,7 +52,15 @@ pub(crate) fn time(
     overlaps: &mut [f64],
 ) -> Vec<Steps> {
     match method {
-        PoseMethod::PointToPoint => overlaps.fill(0.0),
+        PoseMethod::PointToPoint => {
+            for (overlap, pair) in overlaps.iter_mut().zip(blocks.windows(2)) {
+                *overlap = if goes_on(&pair[0], &pair[1]) {
+                    chain.total_delay()
+                } else {
+                    0.0
+                };
+            }
+        }
         PoseMethod::DwellControlled => settle(blocks, corners, scales, chain, changed, overlaps),
         PoseMethod::VelocityControlled => return slow(blocks, corners, scales, chain),
         PoseMethod::JointSpace { .. } => overlaps.fill(chain.total_delay()),
@@ -85,9 +99,11 @@ fn slow(
         .enumerate()
         .map(|(index, block)| {
             let share = |corner: usize| {
-                corners
-                    .get(corner)
-                    .map(|at| scales[corner] * at.slow_share(block, chain))
+                let at = corners.get(corner)?;
+                if goes_on(&blocks[corner], &blocks[corner + 1]) {
+                    return None;
+                }
+                Some(scales[corner] * at.slow_share(block, chain))
             };
             let before = index.checked_sub(1).and_then(share);
             let after = share(index);

@@ -11,7 +11,7 @@ use crate::relax::{AIM, Stretch};
 use crate::screen::{Mixed, Progress, alone, mixed, together};
 use crate::settings::{PoseMethod, PoseSettings};
 use crate::steps::Steps;
-use crate::timing::{corners, time};
+use crate::timing::{corners, goes_on, time};
 use crate::way::Way;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, MachineKinematics};
@@ -181,6 +181,9 @@ impl Stretch for ToolStretch<'_> {
             return f64::INFINITY;
         }
         let pair = [&self.blocks[block], &self.blocks[block + 1]];
+        if goes_on(pair[0], pair[1]) {
+            return f64::INFINITY;
+        }
         let corner = &self.corners[block];
         let lost = scale - self.eased(scale, worst);
         match self.settings.method() {
@@ -194,7 +197,9 @@ impl Stretch for ToolStretch<'_> {
     }
 
     fn ease(&mut self, block: usize, worst: &Worst) {
-        if let Some(&scale) = self.scales.get(block) {
+        if let Some(&scale) = self.scales.get(block)
+            && !goes_on(&self.blocks[block], &self.blocks[block + 1])
+        {
             self.scales[block] = self.eased(scale, worst);
         }
     }

@@ -30,6 +30,15 @@ const RESOLVED: f64 = 1e-4;
 /// Shares shorter than this are not halved: a motion that changes within it goes through a pole.
 const SHORTEST: f64 = 1e-7;
 
+/// A block is cut where its parts alone take less than this share of its time.
+const WORTH_CUTTING: f64 = 0.7;
+
+/// Parts whose times for a share of 1 differ by less than this factor stay together.
+const ALIKE: f64 = 2.0;
+
+/// Shortest duration of what is cut off, as a share of the delay of the chain.
+const SHORTEST_CUT: f64 = 0.25;
+
 /// The first three derivatives of the position of an axis along a block, each for a share of 1.
 type Slopes = [f64; 3];
 
@@ -44,12 +53,22 @@ pub(crate) struct AxisWay {
     seen: Slopes,
 }
 
+/// A part of a block that has a polynomial of its own.
+#[derive(Clone, Debug)]
+struct Part {
+    end: f64,
+    /// What the derivatives are at most, axis by axis.
+    most: [Slopes; MOST_AXES],
+}
+
 /// The way of the axes along a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Way {
     /// Shares of the block in increasing order, and axis positions there.
     positions: Vec<(f64, AxisVector)>,
     axes: Vec<AxisWay>,
+    /// Parts of the block, where it has more than one.
+    parts: Vec<Part>,
     /// Whether the polynomials are near enough.
     known: bool,
 }
@@ -68,6 +87,7 @@ impl Way {
         let mut way = Self {
             positions: Vec::with_capacity(STATIONS),
             axes: vec![AxisWay::default(); machine.axes().len()],
+            parts: Vec::new(),
             known: true,
         };
         let refused = |reason| FiveAxisError::Machine {
@@ -134,26 +154,32 @@ impl Way {
             });
         }
         self.known &= resolved;
+        let mut most = [[0.0; 3]; MOST_AXES];
         for (axis, series) in series[..axes].iter().enumerate() {
-            self.learn(axis, series, [begin, end]);
+            most[axis] = self.learn(axis, series, [begin, end]);
+        }
+        if end - begin < 1.0 {
+            self.parts.push(Part { end, most });
         }
         Ok(())
     }
 
-    /// Takes the polynomial of an axis along a part of the block.
-    fn learn(&mut self, axis: usize, series: &Series<STATIONS>, [begin, end]: [f64; 2]) {
+    /// Takes the polynomial of an axis along a part of the block, and says what its derivatives are at most.
+    fn learn(&mut self, axis: usize, series: &Series<STATIONS>, [begin, end]: [f64; 2]) -> Slopes {
         let scale = 2.0 / (end - begin);
         let rests = last(series);
         let mut series = *series;
         let mut factor = 1.0;
         let mut believed = true;
+        let mut all = [0.0; 3];
         for (order, rest) in rests.into_iter().enumerate() {
             series = slope(&series);
             factor *= scale;
             let most = bound(&series, 1.0);
             believed &= order > 1 || rest <= BELIEVED * most || most <= f64::EPSILON;
             let way = &mut self.axes[axis];
-            way.most[order] = way.most[order].max(factor * (most + rest));
+            all[order] = factor * (most + rest);
+            way.most[order] = way.most[order].max(all[order]);
             if order == 0 {
                 if begin <= 0.0 {
                     way.ends[0] = factor * value(&series, -1.0);
@@ -169,6 +195,43 @@ impl Way {
                 way.seen[order] = way.seen[order].max(factor * seen);
             }
         }
+        all
+    }
+
+    /// Shares at which a block of a given duration is better cut, because a part of it, as beside a pole,
+    /// must be much slower than the rest.
+    pub(crate) fn cuts(&self, axes: &[Axis], asked: f64, chain: &FilterChain) -> Vec<f64> {
+        let mut begin = 0.0;
+        let mut paces = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            let mut pace = asked;
+            for (limits, [first, second, third]) in axes.iter().zip(part.most) {
+                let limits = &limits.limits;
+                pace = pace
+                    .max(first / limits.velocity())
+                    .max((second / limits.acceleration()).sqrt())
+                    .max((third / limits.jerk()).cbrt());
+            }
+            paces.push((pace, part.end - begin));
+            begin = part.end;
+        }
+        let slowest = paces.iter().map(|(pace, _)| *pace).fold(0.0, f64::max);
+        let each: f64 = paces.iter().map(|(pace, share)| pace * share).sum();
+        let mut cuts = Vec::new();
+        if each > WORTH_CUTTING * slowest {
+            return cuts;
+        }
+        let shortest = SHORTEST_CUT * chain.total_delay();
+        let (mut least, mut most, mut width) = (f64::INFINITY, 0.0_f64, 0.0);
+        for ((pace, share), part) in paces.iter().zip(&self.parts) {
+            let alike = *pace <= ALIKE * least && ALIKE * *pace >= most;
+            if width > 0.0 && !alike && most * width >= shortest {
+                cuts.push(part.end - share);
+                (least, most, width) = (f64::INFINITY, 0.0, 0.0);
+            }
+            (least, most, width) = (least.min(*pace), most.max(*pace), width + share);
+        }
+        cuts
     }
 
     /// Where the axes are at the start.
@@ -229,6 +292,25 @@ impl Way {
 }
 
 impl PoseBlock {
+    /// The part of the block from one share of it to another.
+    pub(crate) fn part(&self, from: f64, to: f64) -> Self {
+        let at = |share: f64| {
+            if share >= 1.0 {
+                self.end
+            } else {
+                self.start + (self.end - self.start) * share
+            }
+        };
+        Self {
+            start: at(from),
+            end: at(to),
+            length: self.length * (to - from),
+            turn: self.turn.part(from, to),
+            duration: self.duration * (to - from),
+            ..*self
+        }
+    }
+
     /// Pose at a share of the block.
     pub(crate) fn pose(&self, share: f64) -> Result<ToolPose, FiveAxisError> {
         let tip = if share >= 1.0 {

@@ -39,6 +39,12 @@ fn moves_past_the_pole_at_any_distance_keep_every_limit() {
                 "{name} from {from} past the pole at {distance:.1e}: {:#?}",
                 report.examples
             );
+            // As much as C needs for half a turn, and not as if the whole move were as slow.
+            assert!(
+                report.cycle_time < 4.0,
+                "{name} from {from} past the pole at {distance:.1e}: {} s",
+                report.cycle_time
+            );
         }
     }
 }

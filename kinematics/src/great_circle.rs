@@ -143,6 +143,17 @@ impl GreatCircle {
         self.angle
     }
 
+    /// The part of the turn from one share of it to a larger one.
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        Self {
+            start: self.at(from),
+            end: self.at(to),
+            axis: self.axis,
+            angle: self.angle * (to - from),
+        }
+    }
+
     /// Orientation after a share of the turn from 0 to 1.
     #[must_use]
     pub fn at(&self, share: f64) -> Vector<3> {
@@ -191,6 +202,42 @@ mod tests {
         assert_eq!(turn.at(1.0), turn.end(), "exactly");
         let reached = turned(&turn.start(), &turn.axis(), turn.angle());
         assert!((reached - turn.end()).norm() < 1e-15, "{reached}");
+    }
+
+    #[test]
+    fn parts_of_a_turn_follow_each_other_to_its_end() {
+        let (one, other) = (
+            pose(Vector::<3>::new(0.3, -0.4, 0.2)),
+            pose(Vector::<3>::new(-0.3, -0.1, 0.9)),
+        );
+        let whole = GreatCircle::between(&one, &other).unwrap();
+        let first = whole.part(0.0, 0.3);
+        let last = whole.part(0.3, 1.0);
+        assert_eq!(first.start(), whole.start(), "start");
+        assert_eq!(first.end(), last.start(), "between");
+        assert_eq!(last.end(), whole.end(), "end");
+        let angle = first.angle() + last.angle();
+        assert!((angle - whole.angle()).abs() < 1e-15, "{angle}");
+        let middle = last.at(0.5) - whole.at(0.65);
+        assert!(middle.norm() < 1e-15, "{middle}");
+    }
+
+    #[test]
+    fn a_turn_along_a_parallel_keeps_its_latitude() {
+        let up = Vector::<3>::z();
+        let start = pose(Vector::<3>::new(0.3, 0.0, 0.4));
+        for angle in [1.2, -1.2] {
+            let end = pose(turned(&start.orientation(), &up, angle));
+            let turn = GreatCircle::along_parallel(&start, &end, &up, angle);
+            for step in 0..=10 {
+                let at = turn.at(0.1 * f64::from(step));
+                assert!(
+                    (at.z - start.orientation().z).abs() < 1e-15,
+                    "{angle}: {at}"
+                );
+            }
+            assert!((turn.at(0.999_999_9) - turn.end()).norm() < 1e-6, "{angle}");
+        }
     }
 
     #[test]

@@ -6,10 +6,10 @@
 
 use crate::error::CliError;
 use toolglide_fir::FilterChain;
-use toolglide_fiveaxis::{PoseBlock, PoseCorner, PoseMethod, PosePlanner, PoseSettings};
+use toolglide_fiveaxis::{PoseMethod, PosePlanner, PoseSettings};
 use toolglide_kinematics::{
-    AxisVector, Feedrate, MachineKinematics, OrientationTolerance, PoseFeed, PoseLeg, Tolerance,
-    ToolPose, Vector,
+    AxisVector, Feedrate, MachineKinematics, OrientationTolerance, PoseFeed, PoseLeg, PosePiece,
+    Tolerance, ToolPose, Vector,
 };
 use toolglide_machines::find;
 
@@ -111,8 +111,8 @@ impl PosePath {
             .map_err(|reason| refuse(self.name, reason))
     }
 
-    /// How long the path takes, s.
-    pub(super) fn time(&self, method: PoseMethod) -> Result<f64, CliError> {
+    /// The motion along the path.
+    fn planned(&self, method: PoseMethod) -> Result<Vec<PosePiece>, CliError> {
         let machine = table(self.name)?;
         let legs = self.legs()?;
         let start = self.start(machine.as_ref(), &legs)?;
@@ -130,11 +130,13 @@ impl PosePath {
         planner
             .finish()
             .map_err(|reason| refuse(self.name, reason))?;
-        let mut time = 0.0;
-        while let Some(piece) = planner.pull() {
-            time += piece.duration();
-        }
-        Ok(time)
+        Ok(std::iter::from_fn(|| planner.pull()).collect())
+    }
+
+    /// How long the path takes, s.
+    pub(super) fn time(&self, method: PoseMethod) -> Result<f64, CliError> {
+        let pieces = self.planned(method)?;
+        Ok(pieces.iter().map(PosePiece::duration).sum())
     }
 
     fn start(
@@ -155,21 +157,11 @@ impl PosePath {
             .map_err(|reason| refuse(self.name, reason))
     }
 
-    /// How long the transients of the first two moves overlap, s.
-    pub(super) fn overlap(&self) -> Result<f64, CliError> {
-        let chain = self.chain()?;
-        let blocks: Vec<_> = self
-            .legs()?
-            .iter()
-            .zip(0..)
-            .filter_map(|(leg, number)| PoseBlock::of(leg, number, f64::INFINITY))
-            .collect();
-        Ok(match blocks.as_slice() {
-            [before, after, ..] => {
-                PoseCorner::between(before, after).overlap(before, after, &chain)
-            }
-            _ => 0.0,
-        })
+    /// How long two moves are under way at the same time, s.
+    pub(super) fn overlap(&self, method: PoseMethod) -> Result<f64, CliError> {
+        let pieces = self.planned(method)?;
+        let both = |piece: &&PosePiece| piece.serves().first < piece.serves().last;
+        Ok(pieces.iter().filter(both).map(PosePiece::duration).sum())
     }
 }
 

@@ -30,8 +30,8 @@ pub(super) enum Quantity {
     PoseTime(&'static PosePath, PoseMethod),
     /// By how much one method is faster than another on a path of tool poses, percent.
     PoseGain(&'static PosePath, PoseMethod, PoseMethod),
-    /// How long the moves at the first corner of a path of tool poses overlap.
-    PoseOverlap(&'static PosePath),
+    /// How long two moves of a path of tool poses are under way at the same time.
+    PoseOverlap(&'static PosePath, PoseMethod),
 }
 
 /// A method of tool poses as the command line calls it.
@@ -61,7 +61,7 @@ impl Quantity {
             | Self::Ratio(planned, _)
             | Self::PerCorner(planned, _, _) => Some(planned.course.name),
             Self::CircleFeed(course, ..) | Self::Gain(course, _) => Some(course.name),
-            Self::PoseTime(path, _) | Self::PoseGain(path, ..) | Self::PoseOverlap(path) => {
+            Self::PoseTime(path, _) | Self::PoseGain(path, ..) | Self::PoseOverlap(path, _) => {
                 Some(path.name)
             }
             Self::Crossover(_) => None,
@@ -84,7 +84,9 @@ impl Quantity {
             Self::PoseGain(_, method, other) => {
                 format!("{} faster than {}", called(*method), called(*other))
             }
-            Self::PoseOverlap(_) => "blend time of the corner, ns-dcb".to_owned(),
+            Self::PoseOverlap(_, method) => {
+                format!("blend time of the corner, {}", called(*method))
+            }
             Self::Crossover(tolerance) => format!("crossover turn at {:.0} µm", 1e3 * tolerance),
         }
     }
@@ -97,7 +99,7 @@ impl Quantity {
             Self::CornerSpeed(_) | Self::CircleFeed(..) => "mm/s",
             Self::Ratio(..) | Self::Gain(..) => "",
             Self::Deviation(_) => "µm",
-            Self::PerCorner(..) | Self::PoseOverlap(_) => "ms",
+            Self::PerCorner(..) | Self::PoseOverlap(..) => "ms",
             Self::Crossover(_) => "deg",
         }
     }
@@ -108,7 +110,7 @@ impl Quantity {
             Self::CycleTime(_) | Self::PoseTime(..) | Self::Gain(..) => 5,
             Self::CornerSpeed(_)
             | Self::PerCorner(..)
-            | Self::PoseOverlap(_)
+            | Self::PoseOverlap(..)
             | Self::CircleFeed(..)
             | Self::Deviation(_) => 2,
             Self::Ratio(..) => 4,

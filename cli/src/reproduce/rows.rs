@@ -66,7 +66,7 @@ fn value(quantity: &Quantity, runs: &mut Runs) -> Result<f64, CliError> {
         Quantity::PoseGain(path, method, other) => {
             100.0 * (1.0 - path.time(method)? / path.time(other)?)
         }
-        Quantity::PoseOverlap(path) => 1e3 * path.overlap()?,
+        Quantity::PoseOverlap(path, method) => 1e3 * path.overlap(method)?,
         Quantity::Crossover(tolerance) => crossover(tolerance, runs)?,
         Quantity::CircleFeed(course, radius, tolerance) => {
             let chain = course.chain()?.ok_or_else(|| none(course.name))?;

@@ -10,6 +10,7 @@ use crate::lay::{intervals, knots, piece};
 use crate::pole::Spin;
 use crate::relax::{Stretch, relax};
 use crate::settings::PoseMethod;
+use crate::timing::goes_on;
 use crate::tool::ToolStretch;
 use crate::way::Way;
 use toolglide_kinematics::{PoseLeg, PosePiece};
@@ -47,9 +48,36 @@ impl PosePlanner<'_> {
                     Way::along(&block, self.machine, &self.at)?
                 }
             };
-            self.take(&mut row, block, way)?;
+            self.take_parts(&mut row, block, way)?;
         }
         self.plan_row(row)
+    }
+
+    /// Adds a block to a row: whole, or in parts where one must be much slower than the others.
+    fn take_parts(
+        &mut self,
+        row: &mut Row,
+        block: PoseBlock,
+        way: Way,
+    ) -> Result<(), FiveAxisError> {
+        let free = self.settings.keeps_axis_limits()
+            && !matches!(self.settings.method(), PoseMethod::JointSpace { .. });
+        let cuts = if free {
+            way.cuts(&self.axes, block.duration, self.settings.chain())
+        } else {
+            Vec::new()
+        };
+        if cuts.is_empty() {
+            return self.take(row, block, way);
+        }
+        let mut begin = 0.0;
+        for end in cuts.into_iter().chain([1.0]) {
+            let part = block.part(begin, end);
+            let way = Way::along(&part, self.machine, &self.at)?;
+            self.take(row, part, way)?;
+            begin = end;
+        }
+        Ok(())
     }
 
     /// Adds a block to a row, slowed down as far as it needs by itself.
@@ -104,20 +132,34 @@ impl PosePlanner<'_> {
                 range,
             )));
         }
-        for ((block, asked), met) in stretch.blocks.iter().zip(asked).zip(met) {
-            if let Some(met) = met
+        let blocks = stretch.blocks;
+        self.note(&blocks, &asked, &met);
+        Ok(())
+    }
+
+    /// Notes the moves that are slower than they were asked to be.
+    fn note(&mut self, blocks: &[PoseBlock], asked: &[f64], met: &[Option<Worst>]) {
+        let mut first = 0;
+        for parts in blocks.chunk_by(goes_on) {
+            let range = first..first + parts.len();
+            first = range.end;
+            let asked: f64 = asked[range.clone()].iter().sum();
+            let took: f64 = parts.iter().map(|part| part.duration).sum();
+            let slowest = range
+                .filter(|&index| met[index].is_some())
+                .max_by(|&one, &other| blocks[one].duration.total_cmp(&blocks[other].duration));
+            if let Some(worst) = slowest.and_then(|index| met[index])
                 && asked > 0.0
-                && block.duration > asked * NOTABLE
+                && took > asked * NOTABLE
             {
                 self.slowdowns.push(Slowdown {
-                    leg: block.leg,
-                    line: block.line,
-                    factor: block.duration / asked,
-                    axis: self.axes.get(met.axis).map_or('?', |axis| axis.name),
-                    quantity: met.quantity(),
+                    leg: parts[0].leg,
+                    line: parts[0].line,
+                    factor: took / asked,
+                    axis: self.axes.get(worst.axis).map_or('?', |axis| axis.name),
+                    quantity: worst.quantity(),
                 });
             }
         }
-        Ok(())
     }
 }
