@@ -77,15 +77,14 @@ impl<const N: usize> Bend<N> {
         let slow = (2.0 * tolerance / (radius * chain.variance())).sqrt();
         let mut angular = slow * STEADY_EXCESS.sqrt();
         if tolerance < radius {
-            let notch = std::f64::consts::TAU / chain.long();
+            let most = angular.min(std::f64::consts::TAU / chain.long());
             let share = tolerance / radius;
-            angular = angular.min(angular_velocity(|w| chain.gain(w), share, slow, notch));
+            angular = angular_velocity(|w| chain.gain(w), share, slow, most);
         }
-        // The change of velocity within the longest time constant is at most what an axis may have.
-        let turning = largest_multiple(&self.turning, &(change / chain.long()));
-        angular = angular.min((turning / radius).sqrt());
+        // The change of velocity within the longest filter is at most what an axis may have.
+        let step = largest_multiple(&(self.turning * (self.turn * self.share)), change);
         let feed = (angular * radius / self.share)
-            .min(largest_multiple(&self.reach, change))
+            .min(turning_feed(step, self.longest, chain.long()))
             .min(feedrate);
         // Vertices lie outside, where what they miss is no deviation yet.
         let most = STEADY_EXCESS * tolerance + self.outward;
@@ -105,4 +104,12 @@ impl<const N: usize> Bend<N> {
         }
         2.0 * self.turn * feed * sum
     }
+}
+
+/// Feedrate at which equal turns, `spacing` apart, of which one alone may be passed at `step`, may be
+/// passed one after the other: as many as may be in the longest filter, and one more.
+pub(crate) fn turning_feed(step: f64, spacing: f64, long: f64) -> f64 {
+    let share = spacing / long;
+    // The root of feed (feed / share + 1) = step, without a difference of large numbers.
+    2.0 * step / (1.0 + (1.0 + 4.0 * step / share).sqrt())
 }

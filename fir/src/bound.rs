@@ -18,6 +18,10 @@ const STEPS: u32 = 40;
 /// Precision of that instant as a share of the delay, dimensionless: the bound changes by less.
 const INSTANT_PRECISION: f64 = 1e-7;
 
+/// Pulses that are together in the longest filter for less than this are not, s: the rounding of the times
+/// of steps that follow each other at its length.
+pub(crate) const TOUCH: f64 = 1e-13;
+
 /// When each pulse begins and ends, and the bound at each corner.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Schedule {
@@ -69,39 +73,55 @@ impl Schedule {
 
     /// Times the pulses; those before `fixed` keep the gaps that were handed out.
     ///
-    /// Two pulses whose velocities differ on an axis by more than `change` must not be in the window
-    /// together: the later one waits for the time of the longest filter.
+    /// Two pulses whose velocities differ on an axis by more than `change` must not be in the longest
+    /// filter together: the later one waits, where there is a dwell between them, or at once if it may
+    /// wait `anywhere`.
     pub(crate) fn time<const N: usize>(
         &mut self,
         pulses: &[Pulse<N>],
         fixed: usize,
         chain: &CubicChain,
         change: &Vector<N>,
+        anywhere: bool,
     ) {
         self.begin.clear();
         self.end.clear();
         let mut clock = 0.0;
         let mut could_clash = false;
+        let total = chain.total();
         for (index, pulse) in pulses.iter().enumerate() {
             let velocity = pulse.direction * pulse.feed;
             if index > 0 {
                 clock += if index < fixed {
                     pulse.gap
                 } else {
-                    chain.total() - pulses[index - 1].overlap
+                    total - pulses[index - 1].overlap
                 };
             }
             could_clash =
                 could_clash || (0..N).any(|axis| velocity[axis].abs() > 0.5 * change[axis]);
             if could_clash && index >= fixed {
+                // Where it may wait: the latest dwell.
+                let mut waits = anywhere.then_some(index);
                 for earlier in (0..index).rev() {
                     let free = self.end[earlier] + chain.long();
-                    if free <= clock {
+                    if free <= clock + TOUCH {
                         break;
                     }
                     let other = &pulses[earlier];
+                    if waits.is_none() && earlier + 1 >= fixed {
+                        let dwells = !other.pass || other.overlap < total;
+                        waits = dwells.then_some(earlier + 1);
+                    }
                     let gap = velocity - other.direction * other.feed;
-                    if (0..N).any(|axis| gap[axis].abs() > change[axis]) {
+                    if let Some(waits) = waits
+                        && (0..N).any(|axis| gap[axis].abs() > change[axis])
+                    {
+                        let late = free - clock;
+                        for delayed in waits..index {
+                            self.begin[delayed] += late;
+                            self.end[delayed] += late;
+                        }
                         clock = free;
                         break;
                     }

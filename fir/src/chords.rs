@@ -9,7 +9,7 @@ use toolglide_kinematics::{Arc, Vector};
 
 /// Sagitta of a chord as a share of the tolerance: some seventeen chords are in the window of the
 /// filters where the tolerance limits the feedrate.
-const SAGITTA_SHARE: f64 = 0.08;
+const SAGITTA_SHARE: f64 = 0.12;
 
 /// The vertices of the chords of an arc, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]

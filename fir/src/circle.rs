@@ -7,8 +7,11 @@
 use crate::chain::FilterChain;
 use crate::error::FirError;
 
-/// Halvings of the bracket: the last of them is below the rounding.
+/// Most halvings of the bracket: the last of them is below the rounding.
 const HALVINGS: u32 = 60;
+
+/// Relative width at which the bracket is narrow enough: its lower end keeps the tolerance.
+const NARROW: f64 = 1e-11;
 
 /// Largest feedrate at which a circle of a radius is cut by no more than a tolerance.
 ///
@@ -58,6 +61,9 @@ pub(crate) fn angular_velocity(
 ) -> f64 {
     let (mut low, mut high) = (slow_enough.min(notch), notch);
     for _ in 0..HALVINGS {
+        if high - low <= NARROW * high {
+            break;
+        }
         let middle = 0.5 * (low + high);
         if 1.0 - gain(middle) > share {
             high = middle;

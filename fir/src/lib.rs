@@ -6,6 +6,7 @@
 //! while a path streams in; [`plan`] does so for a whole toolpath. This crate does not know
 //! kinematic corner smoothing, machines or programs.
 
+mod arcs;
 mod bend;
 mod bound;
 mod chain;

@@ -10,7 +10,7 @@ use toolglide_kinematics::{Serves, Vector};
 
 /// Share of the tolerance that merging may use. Feedrate on a curve goes with the root of what is left,
 /// the time to plan with the square of how many legs are in the window.
-pub(crate) const MERGE_SHARE: f64 = 0.15;
+pub(crate) const MERGE_SHARE: f64 = 0.3;
 
 /// Most moves merged into one: bounds memory and the work a move.
 const MOST_MERGED: usize = 128;

@@ -16,13 +16,13 @@ use toolglide_kinematics::{
 };
 
 /// Room for commands that wait to become motion.
-const COMMANDS: usize = 1024;
+const COMMANDS: usize = 4096;
 
 /// Share of the tolerance that is planned with; the rest is for rounding.
 const LINE_SHARE: f64 = 0.9999;
 
 /// The same for arcs, whose chords leave a ripple behind the filters.
-const ARC_SHARE: f64 = 0.996;
+const ARC_SHARE: f64 = 0.99;
 
 /// Programmed feedrates that differ by more than this factor do not share their time constants.
 const SAME_CLASS: f64 = 2.0;
@@ -60,7 +60,8 @@ pub struct FirInterpolation<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 struct ArcUnderWay<const N: usize> {
     chords: Chords<N>,
-    bend: Bend<N>,
+    /// By which the look-ahead knows it.
+    number: u32,
     feedrate: f64,
     tolerance: f64,
     serves: Serves,
@@ -157,10 +158,11 @@ impl<const N: usize> FirInterpolation<N> {
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
         let bend = Bend::new(arc, &chords, tolerance);
+        let feedrate = feedrate.min(bend.largest_feed(self.limits.velocity()));
         self.arc = Some(ArcUnderWay {
             chords,
-            bend,
-            feedrate: feedrate.min(bend.largest_feed(self.limits.velocity())),
+            number: self.look.begin_arc(bend, feedrate),
+            feedrate,
             tolerance,
             serves,
             stops: step.stops(),
@@ -180,7 +182,7 @@ impl<const N: usize> FirInterpolation<N> {
                     0.0
                 };
                 let ArcUnderWay {
-                    bend,
+                    number,
                     feedrate,
                     tolerance,
                     serves,
@@ -195,7 +197,7 @@ impl<const N: usize> FirInterpolation<N> {
                 self.merger.go_to(vertex);
                 let mut pulse = Pulse::between((from, vertex), feedrate, tolerance, serves);
                 pulse.smooth = more;
-                pulse.bend = Some(bend);
+                pulse.arc = Some(number);
                 pulse.bulge = bulge;
                 self.add(pulse);
             }

@@ -3,7 +3,6 @@
 //! Source: section 4.2, where a block is a rectangular pulse; arcs are sequences of chords here. Not
 //! here: its filtered motion.
 
-use crate::bend::Bend;
 use toolglide_kinematics::{Serves, Vector};
 
 /// A straight stretch at constant commanded feedrate, and the corner at its end.
@@ -15,10 +14,12 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) length: f64,
     /// Largest feedrate that the program and the axes leave.
     pub(crate) feedrate: f64,
-    /// The arc that it is part of.
-    pub(crate) bend: Option<Bend<N>>,
+    /// Number of the arc that it is part of.
+    pub(crate) arc: Option<u32>,
     /// Largest feedrate behind the chain.
     pub(crate) limit: f64,
+    /// Largest feedrate beside rest.
+    pub(crate) step: f64,
     /// How far the motion may be from the stretch.
     pub(crate) tolerance: f64,
     /// Whether the next pulse goes on along the same arc, so that there is no corner in between.
@@ -38,6 +39,8 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) turn: f64,
     /// Whether the corner at its end is passed without a dwell, slowly enough.
     pub(crate) pass: bool,
+    /// Whether the next pulse goes on along the same stretch.
+    pub(crate) part: bool,
     /// Whether the corner at its end was sorted already, and pulses before it handed out.
     pub(crate) sorted: bool,
 }
@@ -58,8 +61,10 @@ impl<const N: usize> Pulse<N> {
             direction: span / length,
             length,
             feedrate,
-            bend: None,
+            arc: None,
             limit: feedrate,
+            step: feedrate,
+            part: false,
             tolerance,
             smooth: false,
             steady: 0.0,
@@ -83,6 +88,8 @@ impl<const N: usize> Pulse<N> {
             smooth: false,
             turn: 0.0,
             pass: true,
+            part: true,
+            sorted: true,
             ..*self
         };
         let after = Self {

@@ -45,6 +45,8 @@ pub(crate) struct TimedPulse<const N: usize> {
     pub(crate) duration: f64,
     pub(crate) from: Vector<N>,
     pub(crate) to: Vector<N>,
+    /// That of the whole move: ends of what was cut are rounded.
+    pub(crate) velocity: Vector<N>,
     pub(crate) serves: Serves,
 }
 
@@ -176,7 +178,7 @@ impl<const N: usize> Sweep<N> {
             });
             self.commanded += pulse.gap;
         }
-        let velocity = (pulse.to - pulse.from) / pulse.duration;
+        let velocity = pulse.velocity;
         let begin = self.commanded;
         self.commanded += pulse.duration;
         self.steps.push_back(Step {

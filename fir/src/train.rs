@@ -314,8 +314,9 @@ mod tests {
             }
         }
         assert!(on_line < 1e-12, "{on_line} mm on the line");
-        // Chords differ in time by their length, which grows with the square of their angle.
-        assert!(on_arc < 0.005, "{on_arc} mm on the arc");
+        // Chords differ in time by their length, which grows with the square of their angle, and their
+        // corners are seen where the feedrate is low.
+        assert!(on_arc < 0.01, "{on_arc} mm on the arc");
         assert!(
             matches!(path.moves()[0].path(), Path::Line { .. }),
             "a line first"

@@ -5,54 +5,88 @@
 //! are tried whenever motion begins. Not here: how pulses are timed behind a chain.
 
 use super::LookAhead;
+use super::ramp::STEPS;
 use crate::cubic::CubicChain;
 use crate::settings::{designed_for, largest_change};
 use crate::sweep::Command;
+use toolglide_kinematics::largest_multiple;
 
 /// Feedrates that chains are designed for: that of the program, and each half of the one before.
 const DESIGNS: u32 = 9;
+
+/// A chain that takes this much longer than the best one tells that shorter ones need not be tried.
+const HOPELESS: f64 = 1.25;
+
+/// Time that is so little more than what the feedrates of the program ask for that no chain need be
+/// tried for the rest, as their ratio.
+const ENOUGH: f64 = 1.01;
 
 impl<const N: usize> LookAhead<N> {
     /// Times what waits; where motion begins, behind the chain that serves it best.
     pub(super) fn decide(&mut self, out: &mut impl FnMut(Command<N>)) {
         if self.chosen && self.fixed == 0 {
-            let chain = self.best_chain();
+            self.choose();
             out(Command::Filters {
-                long: chain.long(),
-                short: chain.short(),
+                long: self.chain.long(),
+                short: self.chain.short(),
             });
-            self.use_chain(chain);
+        } else if !self.solve() {
+            self.carry_out(out);
+            self.decide(out);
         }
-        self.solve();
     }
 
-    fn best_chain(&mut self) -> CubicChain {
+    /// What was planned last happens to its end; what came after it begins at rest.
+    fn carry_out(&mut self, out: &mut impl FnMut(Command<N>)) {
+        let late = self.planned - self.fixed.saturating_sub(1);
+        self.pulses.truncate(self.planned);
+        self.capped = self.planned_capped;
+        self.time();
+        self.hand_out(self.pulses.len(), out);
+        self.begin_again(out);
+        self.pulses.extend_from_slice(&self.before[late..]);
+        self.legs = self.pulses.len();
+    }
+
+    fn choose(&mut self) {
         self.waiting.clear();
         self.waiting.extend_from_slice(&self.pulses);
-        let fastest = self.pulses.iter().map(|pulse| pulse.feedrate);
-        let mut design = fastest.fold(0.0, f64::max);
-        let mut best = (f64::INFINITY, designed_for(&self.limits, design));
+        let (mut design, mut least) = (0.0_f64, 0.0);
+        for pulse in &self.pulses {
+            design = design.max(pulse.feedrate);
+            least += pulse.length / pulse.feedrate;
+        }
+        let (mut best, mut takes) = (f64::INFINITY, f64::INFINITY);
+        let mut best_design = design;
         for _ in 0..DESIGNS {
-            let chain = designed_for(&self.limits, design);
-            self.use_chain(chain.clone());
-            self.solve();
-            let last = self.pulses.len() - 1;
-            let takes = self.schedule.end(last) + chain.total();
-            if takes < best.0 {
-                best = (takes, chain);
+            takes = self.try_design(design);
+            if takes < best {
+                (best, best_design) = (takes, design);
             }
-            self.pulses.clear();
-            self.pulses.extend_from_slice(&self.waiting);
+            if takes > HOPELESS * best || best < ENOUGH * least {
+                break;
+            }
             design *= 0.5;
         }
-        best.1
+        if takes > best {
+            self.try_design(best_design);
+        }
+    }
+
+    /// How long what waits takes behind the chain that is designed for a feedrate.
+    fn try_design(&mut self, feed: f64) -> f64 {
+        self.pulses.clear();
+        self.pulses.extend_from_slice(&self.waiting);
+        self.use_chain(designed_for(&self.limits, feed));
+        self.solve();
+        self.schedule.end(self.pulses.len() - 1) + self.chain.total()
     }
 
     /// Other filters from here on; only when nothing was handed out.
     fn use_chain(&mut self, chain: CubicChain) {
         self.change = largest_change(&self.limits, &chain);
         self.chain = chain;
-        self.bend = None;
+        self.arcs.pace(&self.chain, &self.change);
         for index in 0..self.pulses.len() {
             self.limit(index);
         }
@@ -62,18 +96,13 @@ impl<const N: usize> LookAhead<N> {
     pub(super) fn limit(&mut self, index: usize) {
         let pulse = &mut self.pulses[index];
         let feedrate = pulse.feedrate;
-        let Some(bend) = pulse.bend else {
-            let most = toolglide_kinematics::largest_multiple(&pulse.direction, &self.change);
-            pulse.limit = feedrate.min(most);
-            return;
-        };
-        let pace = match self.bend {
-            #[allow(clippy::float_cmp, reason = "the same arc has the same feedrate")]
-            Some((same, its_feedrate, pace)) if same == bend && its_feedrate == feedrate => pace,
-            _ => bend.pace(feedrate, &self.chain, &self.change),
-        };
-        self.bend = Some((bend, feedrate, pace));
-        pulse.limit = pace.feed;
-        pulse.steady = pace.steady;
+        pulse.step = feedrate.min(largest_multiple(&pulse.direction, &self.change));
+        let most = feedrate.min(STEPS * pulse.step);
+        pulse.limit = most;
+        if let Some(arc) = pulse.arc {
+            let pace = self.arcs.of(arc);
+            pulse.limit = most.min(pace.feed);
+            pulse.steady = pace.steady;
+        }
     }
 }

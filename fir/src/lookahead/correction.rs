@@ -12,6 +12,9 @@ const SHARE_THAT_COUNTS: f64 = 0.02;
 /// Rounds of corrections; after that dwells are lengthened only, which always succeeds.
 const ROUNDS: u32 = 40;
 
+/// Rounds after which a dwell is made behind what was handed out at speed: no plan unless it was slow.
+const ROUNDS_TO_DWELL: u32 = 12;
+
 /// Rounds after which a dwell that still does not suffice becomes a full stop.
 const ROUNDS_TO_STOP: u32 = 56;
 
@@ -37,6 +40,10 @@ impl<const N: usize> LookAhead<N> {
                     continue;
                 }
                 self.dirty[corner] = false;
+                if self.pulses[corner].part {
+                    // The bound is largest where the path turns.
+                    continue;
+                }
                 let allowed = self.allowed(corner);
                 let mut bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
                 let bulge = self.pulses[corner].bulge;
@@ -111,7 +118,7 @@ impl<const N: usize> LookAhead<N> {
                 for index in [corner, corner + 1] {
                     self.slower[index] = self.slower[index].max(excess.sqrt());
                 }
-                if corner < self.fixed {
+                if corner < self.fixed && (self.capped || round >= ROUNDS_TO_DWELL) {
                     // What was handed out cannot be slowed any more.
                     self.longer[corner] = self.longer[corner].max(excess.cbrt());
                 }

@@ -1,0 +1,81 @@
+//! Courses on which filtered pulses once broke something, each shrunk to the least that did.
+//!
+//! Not here: random courses.
+
+#![allow(
+    clippy::excessive_precision,
+    clippy::unreadable_literal,
+    reason = "numbers stand as they were drawn"
+)]
+
+use toolglide_tests::course::{Course, Lead, arc, go};
+use toolglide_tests::filtered::keeps;
+
+const INF: f64 = f64::INFINITY;
+
+fn holds<const N: usize>(course: &Course<N>, numbers: &[[f64; 3]; N]) {
+    if let Err(reason) = keeps(course, numbers) {
+        panic!("{reason}");
+    }
+}
+
+/// The bound is largest where the path turns, but where it does not the tolerance may be less.
+#[test]
+#[rustfmt::skip]
+fn a_straight_corner_with_a_small_tolerance_is_passed_before_a_turn_with_a_large_one() {
+    let course = Course { start: [0.0, 0.0, 0.0], legs: vec![
+    go(Lead::Line([1.0, 0.0, 0.0]), 1.0, 0.006979364408176819),
+    go(Lead::Line([1.0068404201149297, 0.0, 0.0]), INF, 0.5),
+    go(Lead::Line([1.0068404201149297, 0.0, -1.0]), 1.0, 0.5),
+] };
+    holds(&course, &[[10.000000000000002, 18307.171460976522, 54921.51438292958]; 3]);
+}
+
+#[test]
+#[rustfmt::skip]
+fn chords_of_an_arc_leave_no_ripple_beyond_the_tolerance_where_one_filter_is_much_longer() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(arc([-3.4541614215448884, 3.5718708423247194], [-7.026032263869608, 0.11770942077983104], [0, 1], false, 0), 222.9578080972793, 0.051192145986835316),
+    go(Lead::Line([-7.7215544424689755, 0.8362140478187872]), 222.9578080972793, 0.051192145986835316),
+] };
+    holds(&course, &[[421.2664667562095, 17496.374355487922, 2916649.4982664823], [52.68618271783048, 201.5315479118913, 120780.01332977194]]);
+}
+
+/// Ends of what is cut are rounded, so that a velocity must not be found from them.
+#[test]
+#[rustfmt::skip]
+fn a_move_of_a_nanometre_is_cut_into_steps_without_breaking_the_jerk() {
+    let course = Course { start: [-80.89139951740711, 0.0, 0.0], legs: vec![
+    go(Lead::Line([-80.89139851740711, 0.0, 0.0]), 0.5566715881287556, 0.5),
+    go(Lead::Line([-79.89139851740711, 0.0, 0.0]), 0.5566715881287556, 0.5),
+] };
+    holds(&course, &[[500.0, 2000.0, 50000.0]; 3]);
+}
+
+/// Steps that follow each other at the length of a filter meet exactly behind it.
+#[test]
+#[rustfmt::skip]
+fn steps_behind_very_short_filters_leave_no_jump() {
+    let course = Course { start: [0.0, 0.0, 0.0], legs: vec![
+    go(Lead::Line([0.000894487117924622, 0.0, 0.0]), 326.0375714036438, 0.5),
+    go(Lead::Line([0.0, 0.0, 0.0]), 326.0375714036438, 0.0027957236336111305),
+    go(Lead::Line([0.6539239342755538, -0.7565603004265959, 0.0]), 326.0375714036438, 0.0027957236336111305),
+    go(Lead::Line([1.3078478685511077, -1.5131206008531919, 0.0]), 326.0375714036438, 0.0027957236336111305),
+    go(arc([0.3078478685511077, -1.5131206008531919, 0.0], [-0.6921109893802146, -1.52219156798385, 8.265744624634413], [0, 1], false, 0), 326.0375714036438, 0.0027957236336111305),
+    go(Lead::Line([-0.6921116964869959, -1.5221922750906312, 8.265744624634413]), 326.0375714036438, 0.0027957236336111305),
+] };
+    holds(&course, &[[29.732654150412177, 26067.202281198246, 23307835.182835165]; 3]);
+}
+
+/// A reversal inside the tolerance is no reason to crawl.
+#[test]
+#[rustfmt::skip]
+fn turning_back_in_a_tolerance_as_long_as_the_moves_is_no_slower_than_stopping() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(Lead::Line([-0.5, 0.0]), 1.0, 0.5),
+    go(Lead::Line([-0.5, 1.3103387149649215]), 1.0, 0.5),
+    go(Lead::Line([-0.5, 0.8103387149649215]), 1.0, 0.5),
+    go(Lead::Line([-0.5, 0.3103387149649215]), 1.0, 0.5),
+] };
+    holds(&course, &[[10.000000000000002, 172.64182963163995, 517.9254888949199]; 2]);
+}
