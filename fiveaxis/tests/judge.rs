@@ -4,7 +4,7 @@ mod common;
 
 use common::{Planned, STAR, judge, legs, plan, settings, start_of, table_ac};
 use toolglide_fiveaxis::PoseMethod;
-use toolglide_kinematics::{Axis, AxisLimits, MachineKinematics, PoseLeg, PoseReport};
+use toolglide_kinematics::{Axis, AxisLimits, MachineKinematics, PoseLeg, PosePath, PoseReport};
 
 const SPEED: f64 = 50.0;
 const TIP: f64 = 0.1;
@@ -137,4 +137,39 @@ fn a_motion_many_turns_away_is_judged_as_at_home() {
         );
     }
     assert!(away.passes(), "{:#?}", away.examples);
+}
+
+/// The star with an exact stop at its fifth pose and a dwell of a quarter of a second after its tenth,
+/// planned after `change` has been made to it.
+fn with_stop_and_dwell(change: impl FnOnce(&mut Vec<PoseLeg>)) -> PoseReport {
+    let (machine, axes) = table_ac();
+    let start = start_of(machine.as_ref(), &STAR[0]);
+    let mut asked = legs(&STAR, SPEED, TIP, ORIENTATION);
+    asked[4].stop = true;
+    let dwell = PoseLeg {
+        path: PosePath::Dwell { duration: 0.25 },
+        ..asked[9].clone()
+    };
+    asked.insert(10, dwell);
+    let mut planned_for = asked.clone();
+    change(&mut planned_for);
+    let settings = settings([0.1, 0.06], PoseMethod::DwellControlled);
+    let planned = plan(machine.as_ref(), &axes, start, &planned_for, &settings);
+    judge(machine.as_ref(), &axes, &asked, &planned)
+}
+
+#[test]
+fn stops_and_dwells_must_be_made() {
+    let report = with_stop_and_dwell(|_| {});
+    assert!(report.passes(), "{:#?}", report.examples);
+    let report = with_stop_and_dwell(|legs| legs[4].stop = false);
+    assert!(tells(&report, "stop"), "no stop: {:#?}", report.examples);
+    let report = with_stop_and_dwell(|legs| {
+        legs[10].path = PosePath::Dwell { duration: 0.2 };
+    });
+    assert!(
+        tells(&report, "dwell"),
+        "a short dwell: {:#?}",
+        report.examples
+    );
 }

@@ -8,17 +8,8 @@ use crate::error::MachineError;
 use crate::geometry::{Distance, WORKPIECE};
 use crate::registry::MachineModel;
 use crate::structure::{Assembly, Branches, Structure};
-use crate::swivel::{Swivel, about_y, about_z};
-use toolglide_kinematics::{AxisKind, KinematicsError, MachineKinematics, ToolPose, Vector};
-
-/// The axes, in machine order.
-const AXES: [(char, AxisKind); 5] = [
-    ('X', AxisKind::Linear),
-    ('Y', AxisKind::Linear),
-    ('Z', AxisKind::Linear),
-    ('B', AxisKind::Rotary),
-    ('C', AxisKind::Rotary),
-];
+use crate::swivel::{Swivel, about_y, about_z, axes};
+use toolglide_kinematics::{KinematicsError, MachineKinematics, ToolPose, Vector};
 
 const GEOMETRY: [Distance; 6] = [
     Distance::required("pivot", "from the B axis to the tool tip").positive(),
@@ -97,7 +88,7 @@ fn build(config: &MachineConfig) -> Result<Box<dyn MachineKinematics>, MachineEr
         offset: Vector::<3>::new(x, y, 0.0),
         pivot,
     };
-    Assembly::build(structure, [wx, wy, wz], AXES, config)
+    Assembly::build(structure, [wx, wy, wz], axes('B'), config)
 }
 
 /// A fork head that turns about Z and tilts the tool about Y.

@@ -9,17 +9,8 @@ use crate::error::MachineError;
 use crate::geometry::{Distance, WORKPIECE_ON_TABLE};
 use crate::registry::MachineModel;
 use crate::structure::{Assembly, Branches, Structure};
-use crate::swivel::{Swivel, about_y, about_z, back};
-use toolglide_kinematics::{AxisKind, KinematicsError, MachineKinematics, ToolPose, Vector};
-
-/// The axes, in machine order.
-const AXES: [(char, AxisKind); 5] = [
-    ('X', AxisKind::Linear),
-    ('Y', AxisKind::Linear),
-    ('Z', AxisKind::Linear),
-    ('B', AxisKind::Rotary),
-    ('C', AxisKind::Rotary),
-];
+use crate::swivel::{Swivel, about_y, about_z, axes, back};
+use toolglide_kinematics::{KinematicsError, MachineKinematics, ToolPose, Vector};
 
 const GEOMETRY: [Distance; 7] = [
     Distance::required("pivot", "from the B axis to the tool tip").positive(),
@@ -104,7 +95,7 @@ fn build(config: &MachineConfig) -> Result<Box<dyn MachineKinematics>, MachineEr
         center: Vector::<3>::new(cx, cy, cz),
         pivot,
     };
-    Assembly::build(structure, [wx, wy, wz], AXES, config)
+    Assembly::build(structure, [wx, wy, wz], axes('B'), config)
 }
 
 /// A head that tilts about Y over a table that turns about Z.

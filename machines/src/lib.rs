@@ -21,6 +21,7 @@ mod structure;
 mod swivel;
 mod table_ac;
 mod table_bc;
+mod tilting_table;
 
 pub use arm_6r::ARM_6R;
 pub use config::{AxisConfig, MachineConfig, ModeConfig};

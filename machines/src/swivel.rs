@@ -4,7 +4,7 @@
 //! near the pole. Not here: which machine axes these are.
 
 use std::f64::consts::PI;
-use toolglide_kinematics::Vector;
+use toolglide_kinematics::{AxisKind, Vector};
 
 /// Directions nearer to the pole than this are looked at closely, dimensionless: there the rounding of
 /// a direction turns the spin by more than 1e-10 rad.
@@ -13,6 +13,17 @@ const NEAR_POLE: f64 = 1e-6;
 /// The spin is kept where that changes the direction by less than this, rad: some hundred roundings
 /// of a unit vector, so that its noise never shows as motion of the spin.
 const KEPT: f64 = 1e-13;
+
+/// X, Y, Z, an axis that tilts, and C, in machine order.
+pub(crate) const fn axes(tilt: char) -> [(char, AxisKind); 5] {
+    [
+        ('X', AxisKind::Linear),
+        ('Y', AxisKind::Linear),
+        ('Z', AxisKind::Linear),
+        (tilt, AxisKind::Rotary),
+        ('C', AxisKind::Rotary),
+    ]
+}
 
 /// A tilt and a spin with their sines and cosines.
 #[derive(Clone, Copy, Debug)]

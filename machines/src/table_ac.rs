@@ -1,126 +1,33 @@
 //! A vertical machine whose table tilts about X and turns the workpiece: axes X, Y, Z, A and C.
 //!
-//! Source: section 5.2, p = a0 + Rx(A)·(d + Rz(C)·(P + w)) and Rx(A)·Rz(C)·O = e_z, solved by atan2. Not
-//! here: signs, zeros, turns and travel, which [`Assembly`] adds.
+//! Source: section 5.2, p = a0 + Rx(A)·(d + Rz(C)·(P + w)) and Rx(A)·Rz(C)·O = e_z. Not here: the kinematics of tilting tables, see `tilting_table`.
 
-use crate::config::{AxisConfig, MachineConfig};
+use crate::config::MachineConfig;
 use crate::error::MachineError;
 use crate::geometry::{Distance, WORKPIECE_ON_TABLE};
 use crate::registry::MachineModel;
-use crate::structure::{Assembly, Branches, Structure};
-use crate::swivel::{Swivel, about_x, about_z, back};
-use toolglide_kinematics::{AxisKind, KinematicsError, MachineKinematics, ToolPose, Vector};
+use crate::swivel::about_x;
+use crate::tilting_table::{self, Tilt, geometry};
+use toolglide_kinematics::{MachineKinematics, Vector};
 
-/// The axes, in machine order.
-const AXES: [(char, AxisKind); 5] = [
-    ('X', AxisKind::Linear),
-    ('Y', AxisKind::Linear),
-    ('Z', AxisKind::Linear),
-    ('A', AxisKind::Rotary),
-    ('C', AxisKind::Rotary),
-];
+const GEOMETRY: [Distance; 10] = geometry!("a", "A");
 
-const GEOMETRY: [Distance; 10] = [
-    Distance::required("a_axis_x", "from machine zero to the A axis, along X"),
-    Distance::required("a_axis_y", "from machine zero to the A axis, along Y"),
-    Distance::required("a_axis_z", "from machine zero to the A axis, along Z"),
-    Distance::required(
-        "c_axis_x",
-        "from the A axis to the C axis at A = 0, along X",
-    ),
-    Distance::required(
-        "c_axis_y",
-        "from the A axis to the C axis at A = 0, along Y",
-    ),
-    Distance::required(
-        "c_axis_z",
-        "from the A axis to the table face at A = 0, along Z",
-    ),
-    Distance::optional("tool_length", "by which Z stands above the tool tip"),
-    WORKPIECE_ON_TABLE[0],
-    WORKPIECE_ON_TABLE[1],
-    WORKPIECE_ON_TABLE[2],
-];
-
-/// A tilting rotary table.
-#[derive(Clone, Debug)]
-struct TableAc {
-    /// A point of the A axis, in machine coordinates.
-    tilt_axis: Vector<3>,
-    /// From it to the center of the table, at A = 0.
-    center: Vector<3>,
-    tool_length: f64,
-}
-
-impl TableAc {
-    /// Where a point on the table, from its center, is in machine coordinates.
-    fn on_machine(&self, tilt: (f64, f64), spin: (f64, f64), point: Vector<3>) -> Vector<3> {
-        self.tilt_axis + about_x(tilt, self.center + about_z(spin, point))
-    }
-
-    /// The swivel direction of a tool orientation: O = (sA·sC, sA·cC, cA).
-    fn swivel(orientation: Vector<3>) -> Vector<3> {
-        Vector::<3>::new(orientation.y, orientation.x, orientation.z)
-    }
-}
-
-impl Structure<5> for TableAc {
-    fn tool(&self, joints: &[f64; 5]) -> Result<(Vector<3>, Vector<3>), KinematicsError> {
-        let [x, y, z, a, c] = *joints;
-        let swivel = Swivel::at(a, c);
-        let point = Vector::<3>::new(x, y, z - self.tool_length) - self.tilt_axis;
-        let tip = about_z(
-            back(swivel.spun),
-            about_x(back(swivel.tilted), point) - self.center,
-        );
-        Ok((tip, Self::swivel(swivel.direction())))
-    }
-
-    fn branches(&self, pose: &ToolPose, near: &[f64; 5]) -> Result<Branches<5>, KinematicsError> {
-        let mut branches = Branches::none();
-        for swivel in Swivel::towards(&Self::swivel(pose.orientation()), near[4]) {
-            let point = self.on_machine(swivel.tilted, swivel.spun, pose.tip());
-            let z = point.z + self.tool_length;
-            branches.push([point.x, point.y, z, swivel.tilt, swivel.spin]);
-        }
-        Ok(branches)
-    }
-}
+/// The table tilts about X; O = (sA·sC, sA·cC, cA).
+const TILT: Tilt = Tilt {
+    about: about_x,
+    swivel: |orientation| Vector::<3>::new(orientation.y, orientation.x, orientation.z),
+};
 
 fn preset() -> MachineConfig {
-    let mut config = MachineConfig::new(
+    tilting_table::preset(
         "table-ac",
-        "table-ac",
-        vec![
-            AxisConfig::new('X', 500.0, 2_500.0, 200_000.0).with_travel(-400.0, 400.0),
-            AxisConfig::new('Y', 500.0, 2_500.0, 200_000.0).with_travel(-400.0, 400.0),
-            AxisConfig::new('Z', 400.0, 2_500.0, 200_000.0).with_travel(-200.0, 500.0),
-            AxisConfig::new('A', 180.0, 1_500.0, 60_000.0).with_travel(-120.0, 120.0),
-            AxisConfig::new('C', 360.0, 3_000.0, 120_000.0),
-        ],
-    );
-    // The table face is 60 mm below the A axis, so that work of that height turns about it.
-    for (name, value) in [
-        ("a_axis_x", 0.0),
-        ("a_axis_y", 0.0),
-        ("a_axis_z", 60.0),
-        ("c_axis_x", 0.0),
-        ("c_axis_y", 0.0),
-        ("c_axis_z", -60.0),
-    ] {
-        config.geometry.insert(name.to_owned(), value);
-    }
-    config
+        'A',
+        std::array::from_fn(|distance| GEOMETRY[distance].name),
+    )
 }
 
 fn build(config: &MachineConfig) -> Result<Box<dyn MachineKinematics>, MachineError> {
-    let [ax, ay, az, cx, cy, cz, tool_length, wx, wy, wz] = config.distances(&GEOMETRY)?;
-    let structure = TableAc {
-        tilt_axis: Vector::<3>::new(ax, ay, az),
-        center: Vector::<3>::new(cx, cy, cz),
-        tool_length,
-    };
-    Assembly::build(structure, [wx, wy, wz], AXES, config)
+    tilting_table::build(config, &GEOMETRY, 'A', TILT)
 }
 
 /// A table that tilts about X and carries a rotary table.
@@ -137,7 +44,7 @@ inventory::submit!(TABLE_AC);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toolglide_kinematics::AxisVector;
+    use toolglide_kinematics::{AxisKind, AxisVector, KinematicsError, ToolPose};
 
     fn machine(geometry: &[(&str, f64)]) -> Box<dyn MachineKinematics> {
         let mut config = preset();

@@ -5,8 +5,9 @@
 //! the path.
 
 use super::away::{from_arc, from_segment};
+use super::course::from_straight;
 use super::report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
-use super::{FOUND_SLACK, MEETING_SLACK, STRAIGHT_SLACK, from_straight};
+use super::{FOUND_SLACK, MEETING_SLACK, STRAIGHT_SLACK};
 use crate::axis_vector::AxisVector;
 use crate::great_circle::angle_between;
 use crate::machine::{Axis, KinematicsError, MachineKinematics};
