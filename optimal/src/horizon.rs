@@ -16,15 +16,12 @@ use crate::window::{EndState, Segment, Window, WindowMotion, WindowSolver};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector, WindowTally};
 
-/// Length of a window in times to stop: the part that is handed out, and about one for the way on to be
-/// free and one for the stop at the end.
-const WINDOW: f64 = 4.5;
-
 /// What is handed out of a window, in times to stop.
-const COMMIT: f64 = 3.3;
+const COMMIT: f64 = 4.0;
 
-/// Longest window up to a stop of the path, in times to stop: what is left is planned at once.
-const LAST_WINDOW: f64 = 7.0;
+/// How much longer a window up to a stop of the path may be, in times to stop: then what is left is
+/// planned at once.
+const LONGER: f64 = 2.5;
 
 /// How many more intervals a stretch has that is planned at once: there is but one window to be solved.
 const REFINED: f64 = 1.3;
@@ -62,6 +59,8 @@ const STOPPING: f64 = 1.2;
 pub(crate) struct Horizon<S, const N: usize> {
     solver: S,
     solves: usize,
+    /// Length of a window in times to stop.
+    window: f64,
     limits: Limits<N>,
     shrunk: Limits<N>,
     weakest: (f64, f64),
@@ -100,6 +99,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         Self {
             solver,
             solves: settings.effort.solves(),
+            window: settings.effort.window(),
             limits: settings.limits,
             shrunk: settings
                 .limits
@@ -229,7 +229,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         let speed = self.start.velocity.norm();
         let open = !closing || self.passes();
         self.free.fill(self.spans.iter(), speed, open, self.weakest);
-        let (reach, enough) = self.reach(WINDOW, FEWEST_SPANS);
+        let (reach, enough) = self.reach(self.window, FEWEST_SPANS);
         let mut window = reach.max((self.planned + 1).min(known));
         if closing && self.fits_at_once(known) {
             window = known;
@@ -242,7 +242,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             return true;
         }
         // What comes after the window is known, too: the path may end there.
-        let enough = enough && self.reach(LAST_WINDOW, FEWEST_SPANS).1;
+        let enough = enough && self.reach(self.window + LONGER, FEWEST_SPANS).1;
         if !closing && (!enough || window == self.planned) {
             return false;
         }
@@ -307,7 +307,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
 
     /// Whether all that is left makes one window that is not much longer than usual.
     fn fits_at_once(&mut self, known: usize) -> bool {
-        self.reach(LAST_WINDOW, FEWEST_SPANS).0 == known
+        self.reach(self.window + LONGER, FEWEST_SPANS).0 == known
     }
 
     /// Finds a plan for the first `count` spans that is accepted and no worse than the one there is;

@@ -177,9 +177,8 @@ fn holds<S: WindowSolver<N>, const N: usize>(
     Ok(tally)
 }
 
-/// Share of windows that may keep the plan before. Limits that differ tenfold between axes and moves of
-/// 0.05 mm beside moves of 10 mm are the worst there is; 0.11 of them did when this was written.
-const MOST_KEPT: f64 = 0.15;
+/// Share of windows that may keep the plan before; of these 559 none did when this was written.
+const MOST_KEPT: f64 = 0.01;
 
 /// Tries random programs by the own solver; `cases` of them.
 fn try_programs<const N: usize>(cases: u32) {
