@@ -6,7 +6,9 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use toolglide_fir::{FilterChain, PulseTrain, Settings, TickFilter, plan};
-use toolglide_kinematics::{Feedrate, Limits, SamplePeriod, Tolerance, Toolpath, Vector};
+use toolglide_kinematics::{
+    Arc, Feedrate, Limits, Move, SamplePeriod, Tolerance, Toolpath, Vector,
+};
 
 fn chain() -> FilterChain {
     FilterChain::with_time_constants(&[0.1, 0.06]).unwrap()
@@ -69,5 +71,47 @@ fn planning(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, ticks, closed_form, planning);
+/// A smooth curve in chords of some 36 µm.
+fn curve(count: u32) -> Toolpath<2> {
+    let points: Vec<_> = (0..=count)
+        .map(|number| TAU * f64::from(number) / f64::from(count))
+        .map(|angle| Vector::<2>::new((3.0 * angle).sin(), (2.0 * angle).sin()) * 50.0)
+        .collect();
+    let feedrate = Feedrate::new(100.0).unwrap();
+    Toolpath::from_points(&points, feedrate, Tolerance::new(0.01).unwrap()).unwrap()
+}
+
+/// Half circles that turn to either side in turns.
+fn waves(count: u32) -> Toolpath<2> {
+    let feedrate = Feedrate::new(50.0).unwrap();
+    let tolerance = Tolerance::new(0.01).unwrap();
+    let mut path = Toolpath::starting_at(Vector::zeros()).unwrap();
+    for number in 0..count {
+        let x = 4.0 * f64::from(number);
+        let ends = [x, x + 4.0, x + 2.0].map(|x| Vector::<2>::new(x, 0.0));
+        let left = number % 2 == 0;
+        let arc = Arc::about(ends[0], ends[1], ends[2], [0, 1], left, 0).unwrap();
+        path.push(Move::arc(arc, feedrate, tolerance)).unwrap();
+    }
+    path
+}
+
+/// Time constants are chosen as the path goes.
+fn planning_what_is_fine(criterion: &mut Criterion) {
+    let settings = Settings::new(Limits::uniform(500.0, 2_500.0, 2e5).unwrap());
+    let mut group = criterion.benchmark_group("planning");
+    for (name, path) in [
+        ("20,000 chords of a curve", curve(20_000)),
+        ("200 half circles", waves(200)),
+    ] {
+        let moves = u64::try_from(path.moves().len()).unwrap();
+        group.throughput(Throughput::Elements(moves));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| plan(black_box(&path), &settings).unwrap());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, ticks, closed_form, planning, planning_what_is_fine);
 criterion_main!(benches);

@@ -16,6 +16,9 @@ fn programs_of_arcs_are_followed_within_the_tolerance() {
         "tinyg/FordEmblem.gcode",
         "ugs/arc_rword_test.gcode",
         "linuxcnc/arcspiral.ngc",
+        "linuxcnc/cds.ngc",
+        "linuxcnc/tort.ngc",
+        "linuxcnc/tp_rgh.ngc",
     ] {
         let name = format!("corpus/{name}");
         let Some(text) = corpus::text(&name) else {
@@ -38,6 +41,8 @@ fn programs_of_arcs_are_followed_within_the_tolerance() {
         }
         let report = judge.finish();
         assert!(report.passes(), "{name}: {:#?}", report.examples);
+        let ratio = report.deviation_ratio.value.max(report.corner_ratio.value);
+        assert!(ratio <= 1.0, "{name}: {ratio} of the tolerance");
     }
 }
 
