@@ -236,11 +236,10 @@ impl<const N: usize> LookAhead<N> {
             self.ramp();
         }
         self.overlap_dwells();
-        self.correct();
-        if !capped {
+        if self.correct() && !capped {
             self.ramp();
+            self.time();
         }
-        self.time();
         self.stop_where_faster();
         self.in_step()
     }
@@ -391,11 +390,15 @@ impl<const N: usize> LookAhead<N> {
                 // Its feedrate was chosen for this.
                 continue;
             }
+            if before.smooth {
+                self.pulses[corner].pass = true;
+                self.pulses[corner].sorted = true;
+                self.pulses[corner].overlap = total;
+                continue;
+            }
             let after = self.pulses[corner + 1];
             let own = self.own_overlap(corner);
-            let pass = if before.smooth {
-                true
-            } else if before.turn > SHARP {
+            let pass = if before.turn > SHARP {
                 false
             } else if corner < self.fixed {
                 own >= total

@@ -22,8 +22,8 @@ const ROUNDS_TO_STOP: u32 = 56;
 const LAST_ROUND: u32 = ROUNDS_TO_STOP + 8;
 
 impl<const N: usize> LookAhead<N> {
-    /// Lengthens dwells and slows pulses until the bound holds at every corner.
-    pub(super) fn correct(&mut self) {
+    /// Lengthens dwells and slows pulses until the bound holds at every corner; whether any had to be.
+    pub(super) fn correct(&mut self) -> bool {
         self.time();
         let count = self.pulses.len();
         let corners = count.saturating_sub(1);
@@ -60,11 +60,12 @@ impl<const N: usize> LookAhead<N> {
             }
             // Beyond the last round every corner in question is a full stop, whose bound is rounding.
             if !broken || round > LAST_ROUND {
-                return;
+                return round > 0;
             }
             self.apply(round);
             self.time();
         }
+        false
     }
 
     /// Whether nothing that may still change is in the window of a corner, or nothing but one arc.
