@@ -6,17 +6,95 @@ use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
 use std::fmt::Write;
 
-const CODES: [&str; 74] = [
-    "G0", "G1", "G2", "G3", "G4", "G5", "G5.1", "G5.2", "G5.3", "G10 L2", "G10 L20", "G10 L1",
-    "G10 L10", "G17", "G18", "G19", "G20", "G21", "G28", "G28.1", "G30", "G30.1", "G40", "G41",
-    "G42", "G41.1", "G42.1", "G43", "G43.1", "G43.2", "G49", "G53", "G54", "G55", "G59.3", "G61",
-    "G64", "G73", "G74", "G80", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89",
-    "G90", "G91", "G90.1", "G91.1", "G92", "G92.1", "G92.2", "G92.3", "G93", "G94", "G97", "G98",
-    "G99", "M0", "M2", "M3", "M6", "M66", "M68", "M70", "M71", "M72", "M73", "M104", "G43.4",
+const CODES: [&str; 84] = [
+    "G0",
+    "G1",
+    "G2",
+    "G3",
+    "G4",
+    "G5",
+    "G5.1",
+    "G5.2",
+    "G5.3",
+    "G10 L2",
+    "G10 L20",
+    "G10 L1",
+    "G10 L10",
+    "G17",
+    "G18",
+    "G19",
+    "G20",
+    "G21",
+    "G28",
+    "G28.1",
+    "G30",
+    "G30.1",
+    "G40",
+    "G41",
+    "G42",
+    "G41.1",
+    "G42.1",
+    "G43",
+    "G43.1",
+    "G43.2",
+    "G49",
+    "G53",
+    "G54",
+    "G55",
+    "G59.3",
+    "G61",
+    "G64",
+    "G73",
+    "G74",
+    "G80",
+    "G81",
+    "G82",
+    "G83",
+    "G84",
+    "G85",
+    "G86",
+    "G87",
+    "G88",
+    "G89",
+    "G90",
+    "G91",
+    "G90.1",
+    "G91.1",
+    "G92",
+    "G92.1",
+    "G92.2",
+    "G92.3",
+    "G93",
+    "G94",
+    "G97",
+    "G98",
+    "G99",
+    "M0",
+    "M2",
+    "M3",
+    "M6",
+    "M66",
+    "M68",
+    "M70",
+    "M71",
+    "M72",
+    "M73",
+    "M104",
+    "G43.4",
+    "G52",
+    "G6.2 P2 K0",
+    "G6.2 P3 K0 X0",
+    "K0",
+    "K1",
+    "G10 L11",
+    "M98",
+    "M98 P1",
+    "M98 P2 L2",
+    "M99",
 ];
-const LETTERS: [&str; 24] = [
+const LETTERS: [&str; 26] = [
     "X", "Y", "Z", "I", "J", "K", "R", "P", "Q", "F", "L", "D", "H", "S", "T", "@", "^", "A", "B",
-    "C", "E", "N", "U", "$",
+    "C", "E", "N", "U", "V", "W", "$",
 ];
 const FUNCTIONS: [&str; 14] = [
     "ABS", "ACOS", "ASIN", "ATAN", "COS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN", "SQRT", "TAN",
@@ -58,6 +136,40 @@ const STATEMENTS: [&str; 12] = [
     "GOTO/1,2,3,0,0,1,",
 ];
 
+const ORDERS: [&str; 30] = [
+    "IF R1<",
+    "IF (R1==1) AND R2>",
+    "IF R1>2 GOTOF ",
+    "IF R1<3 GOTOB ",
+    "ELSE",
+    "ENDIF",
+    "WHILE R1<",
+    "ENDWHILE",
+    "FOR I=1 TO ",
+    "FOR R1=R2 TO ",
+    "ENDFOR",
+    "LOOP",
+    "ENDLOOP",
+    "REPEAT",
+    "UNTIL R1>",
+    "GOTOF ",
+    "GOTOB ",
+    "GOTO ",
+    "GOTOC ",
+    "MARK: ",
+    "N10 ",
+    "R1=R1+",
+    "R[2]=",
+    "DEF INT I=",
+    "TRANS X",
+    "AROT Z",
+    "G41 G1 X",
+    "G40 X",
+    "CYCLE832(",
+    "X=AC(",
+];
+const TARGETS: [&str; 6] = ["MARK", "N10", "1", "R1", "NOT I", ")"];
+
 #[derive(Arbitrary, Debug)]
 enum Value {
     Small(i8),
@@ -85,6 +197,8 @@ enum Line {
     Words(Vec<Item>),
     Control(u8, u8, Vec<Value>),
     Location(u8, Vec<Value>),
+    Order(u8, u8),
+    Program(u8),
     Raw(String),
 }
 
@@ -159,6 +273,13 @@ impl Line {
                         let _ = write!(out, ".{}", tenths.unsigned_abs());
                     }
                 }
+            }
+            Self::Order(order, target) => {
+                out.push_str(pick(&ORDERS, *order));
+                out.push_str(pick(&TARGETS, *target));
+            }
+            Self::Program(number) => {
+                let _ = write!(out, "O{}", number % 4);
             }
             Self::Raw(text) => out.push_str(text),
         }

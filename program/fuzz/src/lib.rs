@@ -51,7 +51,10 @@ fn read_moves(text: &[u8], lenient: bool) {
             Ok((name == "sub").then(|| b"o<sub> sub\nG1X1\no<sub> endsub".to_vec()))
         });
     if lenient {
-        program = program.with_rotary_axes().past_refusals();
+        program = program
+            .with_rotary_axes()
+            .with_secondary_axes()
+            .past_refusals();
     }
     let mut at = Vector::<3>::zeros();
     for step in program.by_ref().take(ENOUGH) {
