@@ -2,13 +2,13 @@
 //!
 //! Source: the modal groups of RS274/NGC. Not here: the modal state, and which words a code needs.
 
+use crate::code::Code;
 use crate::codes::{
-    Code, Distance, FeedMode, Group, Meaning, Motion, Once, PathControl, Plane, Saving, Side, Stop,
-    Subprogram, ToolLength,
+    Distance, FeedMode, Group, Motion, Once, PathControl, Plane, Saving, Side, Stop, Subprogram,
+    ToolLength,
 };
-use crate::error::{Fault, Notice, Remark};
+use crate::error::{Fault, Remark};
 use crate::lexer::{Assignment, Lexer, Word};
-use crate::meanings::{Unread, miscellaneous, of_rotary, preparatory};
 use crate::parameters::Values;
 use crate::place::Span;
 use crate::reason::Reason;
@@ -62,10 +62,10 @@ pub(crate) struct Block {
     present: u32,
     values: [f64; LETTERS],
     spans: [Span; LETTERS],
-    taken: u32,
-    takers: [(Code, Span); Group::COUNT],
+    pub(crate) taken: u32,
+    pub(crate) takers: [(Code, Span); Group::COUNT],
     /// Code that strict reading refuses, with its reason; lenient reading skips it.
-    foreign: Option<(Code, Fault)>,
+    pub(crate) foreign: Option<(Code, Fault)>,
     words: u32,
     /// Parameters that the line sets once it is read.
     pub(crate) assignments: Vec<Assignment>,
@@ -78,7 +78,7 @@ pub(crate) struct Block {
     /// What was met beside codes.
     pub(crate) features: u8,
     /// How often each code was met, for `G` and `M` by ten times its number, as far as one was met.
-    counts: [Vec<u64>; 2],
+    pub(crate) counts: [Vec<u64>; 2],
     pub(crate) motion: Option<Motion>,
     pub(crate) end_of_nurbs: bool,
     pub(crate) once: Option<Once>,
@@ -223,29 +223,6 @@ impl Block {
         self.words == 0 && self.assignments.is_empty()
     }
 
-    /// Codes met in all lines so far, in order, and how often.
-    pub(crate) fn codes(&self) -> impl Iterator<Item = (Code, u64)> + '_ {
-        [b'G', b'M']
-            .into_iter()
-            .zip(&self.counts)
-            .flat_map(|(letter, counts)| {
-                (0..)
-                    .zip(counts)
-                    .filter(|(_, count)| **count > 0)
-                    .map(move |(tenths, &count)| (Code::new(letter, tenths), count))
-            })
-    }
-
-    /// Counts a code, `letter` of `G` and `M`.
-    fn count(&mut self, letter: usize, code: Code) {
-        let counts = &mut self.counts[letter];
-        let index = usize::from(code.tenths().unwrap_or(0));
-        if index >= counts.len() {
-            counts.resize(index + 1, 0);
-        }
-        counts[index] += 1;
-    }
-
     /// Whether the block sets nothing up but what the modal state takes.
     pub(crate) fn is_plain(&self) -> bool {
         self.taken & !PLAIN == 0 && !self.end_of_nurbs
@@ -318,149 +295,6 @@ impl Block {
         self.spans[index(word.letter)] = word.span;
         Ok(())
     }
-
-    fn preparatory(
-        &mut self,
-        word: Word,
-        settings: &Settings,
-        remarks: &mut Vec<Remark>,
-    ) -> Result<(), Fault> {
-        let code = code_of(word, 1, "a number from 0 to 999 with one decimal at most")?;
-        self.count(0, code);
-        if self.take_rotary(code, word.span)? {
-            return Ok(());
-        }
-        match preparatory(code.tenths().unwrap_or_default()) {
-            Ok((Group::Motion, meaning)) => self.take_motion(meaning, code, word.span),
-            Ok((group, meaning)) => {
-                self.take(group, code, word.span)?;
-                self.set(meaning);
-                Ok(())
-            }
-            Err(unread) => {
-                let fault = unread_fault(code, word.span, unread);
-                skip(fault, unread, settings, remarks)
-            }
-        }
-    }
-
-    fn miscellaneous(
-        &mut self,
-        word: Word,
-        settings: &Settings,
-        remarks: &mut Vec<Remark>,
-    ) -> Result<(), Fault> {
-        let code = code_of(word, 10, "a whole number from 0 to 999")?;
-        self.count(1, code);
-        if self.take_rotary(code, word.span)? {
-            return Ok(());
-        }
-        match miscellaneous(code.tenths().unwrap_or_default()) {
-            Ok((group, meaning)) => {
-                self.take(group, code, word.span)?;
-                if code == Code::new(b'M', 90) {
-                    // Off excludes both kinds of coolant.
-                    self.take(Group::SecondCoolant, code, word.span)?;
-                }
-                self.set(meaning);
-                Ok(())
-            }
-            Err(unread) => {
-                let fault = unread_fault(code, word.span, unread);
-                skip(fault.clone(), unread, settings, remarks)?;
-                self.foreign.get_or_insert((code, fault));
-                Ok(())
-            }
-        }
-    }
-
-    /// Takes a code that only a machine with rotary axes has.
-    fn take_rotary(&mut self, code: Code, span: Span) -> Result<bool, Fault> {
-        let known = self
-            .rotary
-            .then(|| of_rotary(code.initial(), code.tenths().unwrap_or(0)));
-        let Some((group, meaning)) = known.flatten() else {
-            return Ok(false);
-        };
-        self.take(group, code, span)?;
-        self.set(meaning);
-        Ok(true)
-    }
-
-    fn take(&mut self, group: Group, code: Code, span: Span) -> Result<(), Fault> {
-        if let Some((first, _)) = self.taker(group) {
-            return Err(Fault::new(
-                span,
-                Reason::SameGroup {
-                    first,
-                    second: code,
-                    group: group.name(),
-                },
-            ));
-        }
-        self.taken |= 1 << group as u32;
-        self.takers[group as usize] = (code, span);
-        Ok(())
-    }
-
-    /// Beside another motion code `G80` has nothing to say: headers of programs often cancel a
-    /// cycle and begin a motion in one block.
-    fn take_motion(&mut self, meaning: Meaning, code: Code, span: Span) -> Result<(), Fault> {
-        let cancels = meaning == Meaning::Motion(Motion::Off);
-        if cancels && self.motion.is_some() {
-            return Ok(());
-        }
-        if self.motion == Some(Motion::Off) {
-            self.taken &= !(1 << Group::Motion as u32);
-        }
-        self.take(Group::Motion, code, span)?;
-        self.set(meaning);
-        Ok(())
-    }
-
-    fn set(&mut self, meaning: Meaning) {
-        match meaning {
-            Meaning::Motion(motion) => self.motion = Some(motion),
-            Meaning::EndOfNurbs => {
-                self.motion = Some(Motion::Off);
-                self.end_of_nurbs = true;
-            }
-            Meaning::Once(once) => self.once = Some(once),
-            Meaning::Side(side) => self.side = Some(side),
-            Meaning::ToolLength(length) => self.tool_length = Some(length),
-            Meaning::Coordinates(system) => self.coordinates = Some(system),
-            Meaning::ReturnToStart(back) => self.return_to_start = Some(back),
-            Meaning::ToolChange => self.tool_change = true,
-            Meaning::ToolTip(tip) => self.tool_tip = Some(tip),
-            Meaning::Saving(saving) => self.saving = Some(saving),
-            Meaning::Outside => self.outside = true,
-            Meaning::Plane(plane) => self.plane = Some(plane),
-            Meaning::Inch => self.units = Some(Units::Inch),
-            Meaning::Millimeter => self.units = Some(Units::Millimeter),
-            Meaning::Distance(distance) => self.distance = Some(distance),
-            Meaning::ArcDistance(distance) => self.arc_distance = Some(distance),
-            Meaning::FeedMode(mode) => self.feed_mode = Some(mode),
-            Meaning::PathControl(control) => self.path_control = Some(control),
-            Meaning::Stop(stop) => self.stop = Some(stop),
-            Meaning::Subprogram(which) => self.subprogram = Some(which),
-            Meaning::Nothing => {}
-        }
-    }
-
-    /// Words of a code that is skipped must not be taken for a motion: without a motion word there
-    /// is no telling whose they are.
-    fn refuse_motion_beside_foreign(&mut self) -> Result<(), Fault> {
-        let geometry = self.first_of(&POINT).or(self.first_of(b"IJKR"));
-        let taken = self.once.is_some() || self.tool_length.is_some();
-        if geometry.is_some()
-            && self.motion.is_none()
-            && !taken
-            && let Some((_, fault)) = self.foreign.take()
-        {
-            return Err(fault);
-        }
-        Ok(())
-    }
 }
 
 /// Letters come from the lexer in upper case.
@@ -475,45 +309,4 @@ fn index(letter: u8) -> usize {
 
 fn bit(letter: u8) -> u32 {
     1 << index(letter)
-}
-
-fn code_of(word: Word, step: u16, bound: &'static str) -> Result<Code, Fault> {
-    Code::of_number(word.letter, word.value, step).ok_or_else(|| {
-        Fault::new(
-            word.span,
-            Reason::NotACode {
-                letter: char::from(word.letter),
-                value: word.value,
-                bound,
-            },
-        )
-    })
-}
-
-fn unread_fault(code: Code, span: Span, unread: Unread) -> Fault {
-    let reason = match unread {
-        Unread::Known(what) | Unread::Harmless(what) => Reason::NotSupported { code, what },
-        Unread::Carried => Reason::NotSupported {
-            code,
-            what: "a function of another machine",
-        },
-        Unread::Unknown | Unread::UnknownHarmless => Reason::UnknownCode { code },
-    };
-    Fault::new(span, reason)
-}
-
-/// Turns a refusal into a remark where that is wanted and cannot change the motion.
-fn skip(
-    fault: Fault,
-    unread: Unread,
-    settings: &Settings,
-    remarks: &mut Vec<Remark>,
-) -> Result<(), Fault> {
-    let harmless = matches!(unread, Unread::Harmless(_) | Unread::UnknownHarmless);
-    if settings.lenient && harmless || unread == Unread::Carried {
-        remarks.push((fault.span, Notice::Skipped(fault.reason)));
-        Ok(())
-    } else {
-        Err(fault)
-    }
 }

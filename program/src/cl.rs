@@ -4,23 +4,21 @@
 //! holds for one move; `CIRCLE` names centre, axis and radius of the arc that the next `GOTO` ends,
 //! counter-clockwise about its axis. Not here: cycles and definitions of geometry, which are refused.
 
-use crate::chords::count;
+use crate::cl_arc::Circle;
 use crate::error::{Fault, Notice, ProgramError, Warning};
 use crate::lines::{LONGEST_LINE, Lines};
 use crate::place::{Place, Span};
 use crate::program::MOST_WARNINGS;
 use crate::reason::Reason;
 use crate::settings::Settings;
-use crate::splines::CHORD_SHARE;
 use crate::statement::Statement;
 use crate::statement_error::StatementError;
 use crate::tools::LARGEST_TOOL;
-use crate::units::{Units, within_reach};
+use crate::units::Units;
 use std::collections::{BTreeSet, VecDeque};
 use std::io::BufRead;
 use std::sync::Arc;
-use toolglide_kinematics::numeric::{ARC_RADIUS_MISMATCH, ARC_RADIUS_MISMATCH_SHARE};
-use toolglide_kinematics::{Feedrate, PoseEnd, PoseFeed, PoseMove, Tolerance, ToolPose, Vector};
+use toolglide_kinematics::{PoseEnd, PoseFeed, PoseMove, Vector};
 
 /// Statements that say nothing about the motion.
 const SILENT: [&str; 28] = [
@@ -61,31 +59,23 @@ const MINUTE: f64 = 60.0;
 #[derive(Debug)]
 pub(crate) struct CutterLocations<R> {
     file: Arc<str>,
-    lines: Lines<R>,
+    pub(crate) lines: Lines<R>,
     /// The statement being read, over all its lines.
     text: Vec<u8>,
-    settings: Settings,
-    units: Units,
-    feedrate: Option<f64>,
-    rapid: bool,
-    tip: Vector<3>,
-    orientation: Vector<3>,
-    circle: Option<Circle>,
-    waiting: VecDeque<PoseMove>,
+    pub(crate) settings: Settings,
+    pub(crate) units: Units,
+    pub(crate) feedrate: Option<f64>,
+    pub(crate) rapid: bool,
+    pub(crate) tip: Vector<3>,
+    pub(crate) orientation: Vector<3>,
+    pub(crate) circle: Option<Circle>,
+    pub(crate) waiting: VecDeque<PoseMove>,
     pub(crate) warnings: Vec<Warning>,
     pub(crate) more_warnings: u64,
     pub(crate) statements: u64,
     pub(crate) tools_used: BTreeSet<u32>,
     pub(crate) past_refusals: bool,
     ended: bool,
-}
-
-/// The arc that the next GOTO ends.
-#[derive(Clone, Copy, Debug)]
-struct Circle {
-    center: Vector<3>,
-    axis: Vector<3>,
-    radius: f64,
 }
 
 impl<R: BufRead> CutterLocations<R> {
@@ -289,193 +279,6 @@ impl<R: BufRead> CutterLocations<R> {
             ));
         }
         self.feedrate = Some(units.length(value) / MINUTE);
-        Ok(())
-    }
-
-    /// Tip and orientation of a statement; without an orientation the last one stays.
-    fn pose(
-        &self,
-        statement: &Statement<'_>,
-        name: &'static str,
-    ) -> Result<(Vector<3>, Vector<3>), Fault> {
-        let numbers = statement.numbers(false)?;
-        let (tip, orientation) = match numbers[..] {
-            [x, y, z] => ([x, y, z], self.orientation),
-            [x, y, z, i, j, k] => ([x, y, z], Vector::<3>::new(i, j, k)),
-            _ => {
-                let (given, wanted) = (numbers.len(), "3 or 6");
-                let reason = StatementError::WrongCount {
-                    name,
-                    given,
-                    wanted,
-                };
-                return Err(Fault::new(statement.span, reason.into()));
-            }
-        };
-        let tip = Vector::<3>::from(tip).map(|length| self.units.length(length));
-        self.check_reach(tip, statement)?;
-        let pose = ToolPose::new(tip, orientation)
-            .map_err(|reason| Fault::new(statement.span, Reason::Path(reason)))?;
-        Ok((pose.tip(), pose.orientation()))
-    }
-
-    fn check_reach(&self, point: Vector<3>, statement: &Statement<'_>) -> Result<(), Fault> {
-        for (letter, &length) in ['X', 'Y', 'Z'].into_iter().zip(point.iter()) {
-            within_reach(letter, length).map_err(|reason| Fault::new(statement.span, reason))?;
-        }
-        Ok(())
-    }
-
-    fn circle(&self, statement: &Statement<'_>) -> Result<Circle, Fault> {
-        let numbers = statement.numbers(true)?;
-        let [x, y, z, i, j, k, radius] = numbers[..] else {
-            let (name, given, wanted) = ("CIRCLE", numbers.len(), "7: centre, axis and radius");
-            let reason = StatementError::WrongCount {
-                name,
-                given,
-                wanted,
-            };
-            return Err(Fault::new(statement.span, reason.into()));
-        };
-        let center = Vector::<3>::new(x, y, z).map(|length| self.units.length(length));
-        self.check_reach(center, statement)?;
-        let axis = ToolPose::new(center, Vector::<3>::new(i, j, k))
-            .map_err(|reason| Fault::new(statement.span, Reason::Path(reason)))?
-            .orientation();
-        let radius = self.units.length(radius);
-        if !(radius > 0.0 && radius.is_finite()) {
-            let (quantity, value) = ("radius of the circle", radius);
-            let reason = Reason::NotPositive { quantity, value };
-            return Err(Fault::new(statement.span, reason));
-        }
-        Ok(Circle {
-            center,
-            axis,
-            radius,
-        })
-    }
-
-    fn go_to(&mut self, statement: &Statement<'_>) -> Result<(), Fault> {
-        let (tip, orientation) = self.pose(statement, "GOTO")?;
-        match self.circle.take() {
-            Some(circle) => self.arc(&circle, tip, orientation, statement),
-            None => self.line(tip, orientation, statement),
-        }
-    }
-
-    fn line(
-        &mut self,
-        tip: Vector<3>,
-        orientation: Vector<3>,
-        statement: &Statement<'_>,
-    ) -> Result<(), Fault> {
-        (self.tip, self.orientation) = (tip, orientation);
-        let feed = self.feed(statement)?;
-        let pose = self.tool_pose(tip, orientation, statement)?;
-        self.push(
-            PoseEnd::Pose(pose),
-            feed,
-            self.settings.tolerance,
-            statement,
-        )
-    }
-
-    fn tool_pose(
-        &self,
-        tip: Vector<3>,
-        orientation: Vector<3>,
-        statement: &Statement<'_>,
-    ) -> Result<ToolPose, Fault> {
-        ToolPose::new(tip, orientation)
-            .map_err(|reason| Fault::new(statement.span, Reason::Path(reason)))
-    }
-
-    /// Chords of an arc, rising evenly along its axis; the orientation turns evenly too.
-    fn arc(
-        &mut self,
-        circle: &Circle,
-        tip: Vector<3>,
-        orientation: Vector<3>,
-        statement: &Statement<'_>,
-    ) -> Result<(), Fault> {
-        let (start, before) = (self.tip, self.orientation);
-        (self.tip, self.orientation) = (tip, orientation);
-        let radius = circle.radius;
-        let allowed = ARC_RADIUS_MISMATCH.max(ARC_RADIUS_MISMATCH_SHARE * radius);
-        let across = |point: Vector<3>| {
-            let from = point - circle.center;
-            from - circle.axis * from.dot(&circle.axis)
-        };
-        let (from, to) = (across(start), across(tip));
-        for (which, out) in [("start", from), ("end", to)] {
-            let distance = out.norm();
-            if (distance - radius).abs() > allowed {
-                let reason = StatementError::OffCircle {
-                    which,
-                    distance,
-                    radius,
-                    allowed,
-                };
-                return Err(Fault::new(statement.span, reason.into()));
-            }
-        }
-        let turn = circle.axis.dot(&from.cross(&to)).atan2(from.dot(&to));
-        let sweep = if turn > 0.0 {
-            turn
-        } else {
-            turn + std::f64::consts::TAU
-        };
-        let rise = circle.axis * (tip - start).dot(&circle.axis);
-        let tolerance = self.settings.tolerance.length();
-        let chords = count(radius, sweep, CHORD_SHARE * tolerance);
-        let kept =
-            Tolerance::new(tolerance * (1.0 - CHORD_SHARE)).unwrap_or(self.settings.tolerance);
-        let feed = self.feed(statement)?;
-        let base = start - from;
-        for chord in 1..=chords {
-            let share = f64::from(chord) / f64::from(chords);
-            let (sine, cosine) = (share * sweep).sin_cos();
-            let out = from * cosine + circle.axis.cross(&from) * sine;
-            let point = if chord == chords {
-                tip
-            } else {
-                base + out + rise * share
-            };
-            let blend = before + (orientation - before) * share;
-            let length = blend.norm();
-            let turned = if length > 0.5 {
-                blend / length
-            } else {
-                orientation
-            };
-            let turned = if chord == chords { orientation } else { turned };
-            let pose = self.tool_pose(point, turned, statement)?;
-            self.push(PoseEnd::Pose(pose), feed, kept, statement)?;
-        }
-        Ok(())
-    }
-
-    fn feed(&mut self, statement: &Statement<'_>) -> Result<PoseFeed, Fault> {
-        if std::mem::take(&mut self.rapid) {
-            return Ok(PoseFeed::Rapid);
-        }
-        let fault = |reason| Fault::new(statement.span, reason);
-        let speed = self.feedrate.ok_or_else(|| fault(Reason::NoFeedrate))?;
-        let feedrate = Feedrate::new(speed).map_err(|_| fault(Reason::Feedrate { speed }))?;
-        Ok(PoseFeed::Speed(feedrate))
-    }
-
-    fn push(
-        &mut self,
-        end: PoseEnd,
-        feed: PoseFeed,
-        tolerance: Tolerance,
-        statement: &Statement<'_>,
-    ) -> Result<(), Fault> {
-        let line = u32::try_from(self.lines.count()).unwrap_or(u32::MAX);
-        let next = PoseMove::new(end, feed, tolerance)
-            .map_err(|reason| Fault::new(statement.span, Reason::Path(reason)))?;
-        self.waiting.push_back(next.from_line(line));
         Ok(())
     }
 

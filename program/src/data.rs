@@ -3,7 +3,7 @@
 //! Source: `G10` of LinuxCNC. Parameters hold origins in mm. Not here: what offsets do to a point.
 
 use crate::block::{AXES, Block};
-use crate::codes::Code;
+use crate::code::Code;
 use crate::error::Fault;
 use crate::lower::Lowering;
 use crate::modal::whole;

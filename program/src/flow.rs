@@ -3,13 +3,13 @@
 //! The file itself is read once and never held; only loops and subroutines are remembered. Not
 //! here: what an O word does, see `branch`.
 
-use crate::control::{Control, Keyword, Label, glance};
+use crate::control::{Control, Keyword, Label};
 use crate::error::Fault;
 use crate::flow_error::FlowError;
 use crate::lines::Lines;
 use crate::place::{Place, Span};
 use crate::reason::Reason;
-use crate::recording::{LONGEST_RECORDING, Recording};
+use crate::recording::Recording;
 use crate::subprograms::Rest;
 use crate::tape::Tape;
 use std::collections::BTreeMap;
@@ -72,7 +72,7 @@ pub(crate) struct Flow<R> {
     /// The rest of the file, once a subprogram was called.
     pub(crate) rest: Option<Rest>,
     /// The line being run, if it is not the one of the file.
-    current: Option<(Arc<Recording>, usize)>,
+    pub(crate) current: Option<(Arc<Recording>, usize)>,
     steps: u64,
 }
 
@@ -195,7 +195,7 @@ impl<R: BufRead> Flow<R> {
     }
 
     /// Counts a line that is run again.
-    fn step(&mut self) -> Result<(), Reason> {
+    pub(crate) fn step(&mut self) -> Result<(), Reason> {
         self.steps += 1;
         if self.steps > self.most_steps {
             let bound = self.most_steps;
@@ -231,89 +231,6 @@ impl<R: BufRead> Flow<R> {
             line.push(self.lines.text());
             (Arc::new(line), 0)
         })
-    }
-
-    /// Passes over lines until one of `ends` with the label of `control`, which is then the line
-    /// being run.
-    pub(crate) fn skip(
-        &mut self,
-        control: &Control,
-        ends: &[Keyword],
-        closing: &'static str,
-    ) -> Result<Keyword, Fault> {
-        let opening = self.here();
-        loop {
-            let more = match self.frames.last_mut() {
-                Some(frame) if frame.next < frame.end => {
-                    self.current = Some((Arc::clone(&frame.recording), frame.next));
-                    frame.next += 1;
-                    self.step().map_err(|reason| control.because(reason))?;
-                    true
-                }
-                Some(_) => false,
-                None => self
-                    .lines
-                    .advance()
-                    .map_err(|reason| control.because(reason))?,
-            };
-            if !more {
-                self.current = Some(opening);
-                return Err(control.not_closed(closing));
-            }
-            if let Some(keyword) = glance(self.text(), &control.label)
-                && ends.contains(&keyword)
-            {
-                return Ok(keyword);
-            }
-        }
-    }
-
-    /// Remembers lines from the one being run, or from the next, to the end of the block that
-    /// `control` begins.
-    pub(crate) fn record(
-        &mut self,
-        control: &Control,
-        with_first: bool,
-        end: Keyword,
-    ) -> Result<Arc<Recording>, Fault> {
-        let outer = self
-            .current
-            .as_ref()
-            .and_then(|(recording, _)| recording.outer);
-        let (file, number) = match &self.current {
-            Some((recording, index)) => (Arc::clone(&recording.file), recording.number(*index)),
-            None => (Arc::clone(&self.file), self.lines.count()),
-        };
-        let mut recording = Recording::new(&file, number + u64::from(!with_first));
-        recording.outer = outer;
-        let opening = self.here();
-        let mut fits = !with_first || recording.push(self.text());
-        loop {
-            let more = match self.frames.last_mut() {
-                Some(frame) if frame.next < frame.end => {
-                    self.current = Some((Arc::clone(&frame.recording), frame.next));
-                    frame.next += 1;
-                    true
-                }
-                Some(_) => false,
-                None => self
-                    .lines
-                    .advance()
-                    .map_err(|reason| control.because(reason))?,
-            };
-            if !more {
-                self.current = Some(opening);
-                return Err(control.not_closed(end.name()));
-            }
-            fits = fits && recording.push(self.text());
-            if !fits {
-                let bound = LONGEST_RECORDING;
-                return Err(control.fault(FlowError::TooLong { bound }));
-            }
-            if glance(self.text(), &control.label) == Some(end) {
-                return Ok(Arc::new(recording));
-            }
-        }
     }
 
     /// Runs a recording from its first line.
@@ -358,7 +275,7 @@ impl Control {
         Fault::new(self.span, reason)
     }
 
-    fn not_closed(&self, closing: &'static str) -> Fault {
+    pub(crate) fn not_closed(&self, closing: &'static str) -> Fault {
         self.fault(FlowError::NotClosed {
             keyword: self.keyword.name(),
             label: self.label.to_string().into(),

@@ -5,29 +5,24 @@
 
 use crate::arcs::arc;
 use crate::block::Block;
-use crate::chords::count;
-use crate::codes::{FeedMode, Group, Motion, Once, PathControl, Plane, Saving, Stop};
+use crate::codes::{Group, Motion, Once, PathControl, Saving, Stop};
 use crate::compensation::Compensation;
-use crate::cycles::CycleState;
+use crate::cycle_words::CycleState;
 use crate::error::{Fault, Remark};
 use crate::knot_spline::KnotSpline;
 use crate::lexer::Assignment;
 use crate::machining_error::MachiningError;
-use crate::modal::{Modal, not_negative};
+use crate::modal::Modal;
 use crate::offsets::Offsets;
 use crate::parameters::Parameters;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
-use crate::splines::{CHORD_SHARE, Nurbs};
+use crate::splines::Nurbs;
 use crate::tools::ToolTable;
-use crate::units::inverse_time;
 use crate::uses::{check, motion_of, motion_span};
 use std::collections::{BTreeSet, VecDeque};
-use toolglide_kinematics::{Feedrate, Move, Tolerance, Vector};
-
-/// Longest dwell, s: about eleven days, more than any process waits.
-const LONGEST_DWELL: f64 = 1e6;
+use toolglide_kinematics::{Feedrate, Move, Vector};
 
 /// Moves that one block may make: more than any spline or cycle of a real program, and a bound on
 /// what waits for the planner.
@@ -221,27 +216,6 @@ impl Lowering {
         }
     }
 
-    fn dwell(&self, block: &Block) -> Result<Move<3>, Fault> {
-        let Some(duration) = not_negative(block, b'P', "dwell")? else {
-            let (code, span) = block
-                .taker(Group::NonModal)
-                .unwrap_or((Motion::Off.code(), motion_span(block)));
-            return Err(Fault::new(span, Reason::WordMissing { code, letter: 'P' }));
-        };
-        self.rest(duration, block.span(b'P'))
-    }
-
-    /// A dwell of a duration, s, that `span` asks for.
-    pub(crate) fn rest(&self, duration: f64, span: Span) -> Result<Move<3>, Fault> {
-        if duration > LONGEST_DWELL {
-            let (value, bound) = (duration, LONGEST_DWELL);
-            return Err(Fault::new(span, Reason::DwellTooLong { value, bound }));
-        }
-        Move::dwell(duration, self.modal.tolerance)
-            .map(|rest| rest.from_line(self.line))
-            .map_err(|error| Fault::new(span, Reason::Path(error)))
-    }
-
     /// A straight or circular move.
     fn step(
         &mut self,
@@ -288,62 +262,6 @@ impl Lowering {
         Ok(())
     }
 
-    /// Whether the plane of arcs is none of the machine.
-    fn turns_arcs(&self) -> bool {
-        let upright = self.modal.plane != Plane::Xy && self.offsets.rotation() != 0.0;
-        upright || !self.offsets.frame().is_straight()
-    }
-
-    /// An arc in a plane that is none of the machine, as chords.
-    fn turned_arc(
-        &mut self,
-        block: &Block,
-        motion: Motion,
-        end: Vector<3>,
-        moves: &mut VecDeque<Move<3>>,
-    ) -> Result<(), Fault> {
-        let span = motion_span(block);
-        if self.compensation.is_some() {
-            let (code, state) = (
-                motion.code(),
-                "in a plane that is turned, with compensation on",
-            );
-            return Err(Fault::new(
-                span,
-                MachiningError::NotNow { code, state }.into(),
-            ));
-        }
-        // In the coordinates of the program the arc is like any other.
-        let offsets = std::mem::replace(&mut self.offsets, Offsets::new());
-        let found = arc(block, self, motion, self.program, end);
-        self.offsets = offsets;
-        let arc = match found {
-            Ok(arc) => arc,
-            Err(fault) => {
-                (self.program, self.position) = (end, self.offsets.on_machine(end));
-                return Err(fault);
-            }
-        };
-        let feedrate = self.feedrate(block, arc.length())?;
-        let (first, last) = arc.radii();
-        let chords = count(first.max(last), arc.sweep(), self.chord_error());
-        let whole = self.modal.tolerance;
-        self.modal.tolerance =
-            Tolerance::new(whole.length() * (1.0 - CHORD_SHARE)).unwrap_or(whole);
-        let mut outcome = Ok(());
-        for chord in 1..=chords {
-            let share = f64::from(chord) / f64::from(chords);
-            outcome = outcome.and_then(|()| self.go(arc.point(share), feedrate, span, moves));
-        }
-        self.modal.tolerance = whole;
-        if self.modal.path_control == PathControl::ExactStop
-            && let Some(last) = moves.back_mut()
-        {
-            *last = last.with_exact_stop();
-        }
-        outcome
-    }
-
     /// Hands a move on, behind what waits.
     pub(crate) fn emit(
         &mut self,
@@ -378,36 +296,6 @@ impl Lowering {
             .map_err(|error| Fault::new(span, Reason::Path(error)))?;
         moves.push_back(step.from_line(self.line));
         Ok(())
-    }
-
-    /// Feedrate of a feed move of `length`.
-    pub(crate) fn feedrate(&self, block: &Block, length: f64) -> Result<Feedrate, Fault> {
-        let written = block.get(b'F');
-        let span = match written {
-            Some(_) => block.span(b'F'),
-            None => motion_span(block),
-        };
-        let fault = |reason| Fault::new(span, reason);
-        let positive = |value: f64| {
-            let quantity = "feedrate";
-            if value > 0.0 {
-                Ok(value)
-            } else {
-                Err(fault(Reason::NotPositive { quantity, value }))
-            }
-        };
-        let speed = match self.modal.feed_mode {
-            FeedMode::PerMinute => positive(self.modal.feedrate.ok_or(fault(Reason::NoFeedrate))?)?,
-            FeedMode::InverseTime => {
-                let rate = positive(written.ok_or(fault(Reason::NoInverseTime))?)?;
-                if length <= 0.0 {
-                    // Nothing moves, so there is no speed to keep.
-                    return Ok(Feedrate::RAPID);
-                }
-                inverse_time(length, rate)
-            }
-        };
-        Feedrate::new(speed).map_err(|_| fault(Reason::Feedrate { speed }))
     }
 
     fn save(&mut self, saving: Saving, block: &Block) -> Result<(), Fault> {

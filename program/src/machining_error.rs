@@ -2,7 +2,7 @@
 //!
 //! Lengths are in mm. Not here: words and codes, see [`Reason`](crate::Reason).
 
-use crate::codes::Code;
+use crate::code::Code;
 use thiserror::Error;
 
 /// Why a block that is read well cannot be carried out.

@@ -4,7 +4,8 @@
 //! where the point is on the machine.
 
 use crate::block::{AXES, Block};
-use crate::codes::{Code, Distance, Group, Once, Plane};
+use crate::code::Code;
+use crate::codes::{Distance, Group, Once, Plane};
 use crate::error::Fault;
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;

@@ -4,7 +4,7 @@
 
 use crate::axis_words::AxisWords;
 use crate::cl::CutterLocations;
-use crate::codes::Code;
+use crate::code::Code;
 use crate::error::{ProgramError, Warning};
 use crate::language::Language;
 use crate::program::Program;

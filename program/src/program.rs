@@ -3,12 +3,11 @@
 //! Not here: the language, see the crate.
 
 use crate::aftermath::Aftermath;
-use crate::block::{Block, FEATURES, O_WORDS};
-use crate::codes::{Code, Group, Subprogram};
+use crate::block::{Block, O_WORDS};
+use crate::codes::{Group, Subprogram};
 use crate::control::o_word;
 use crate::error::{Fault, ProgramError, Remark, Warning};
 use crate::flow::Flow;
-use crate::language::Language;
 use crate::lexer::check_text;
 use crate::lines::LONGEST_LINE;
 use crate::lower::Lowering;
@@ -20,13 +19,10 @@ use crate::settings::Settings;
 use crate::sinumerik::Sinumerik;
 use crate::sinumerik_reader::Reader;
 use crate::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
-use crate::tape::Tape;
-use crate::tools::ToolTable;
 use std::collections::VecDeque;
 use std::io::BufRead;
 use std::iter::FusedIterator;
-use std::sync::Arc;
-use toolglide_kinematics::{Move, Vector};
+use toolglide_kinematics::Move;
 
 /// Warnings that are kept; of more, only the number is known, because a program may deserve one
 /// for each of its lines.
@@ -38,19 +34,19 @@ pub const MOST_WARNINGS: usize = 100;
 /// it yields nothing more, unless it [goes on](Self::past_refusals); the moves before it are valid.
 #[derive(Debug)]
 pub struct Program<R> {
-    flow: Flow<R>,
+    pub(crate) flow: Flow<R>,
     pub(crate) block: Block,
     pub(crate) lowering: Lowering,
     pub(crate) waiting: VecDeque<Move<3>>,
     remarks: Vec<Remark>,
-    warnings: Vec<Warning>,
-    more_warnings: u64,
-    blocks: u64,
+    pub(crate) warnings: Vec<Warning>,
+    pub(crate) more_warnings: u64,
+    pub(crate) blocks: u64,
     opened: bool,
     ended: bool,
-    past_refusals: bool,
+    pub(crate) past_refusals: bool,
     aftermath: Aftermath,
-    sinumerik: Option<Sinumerik>,
+    pub(crate) sinumerik: Option<Sinumerik>,
 }
 
 impl<R: BufRead> Program<R> {
@@ -71,137 +67,6 @@ impl<R: BufRead> Program<R> {
             aftermath: Aftermath::default(),
             sinumerik: None,
         }
-    }
-
-    /// The same program, with the tools of the machine.
-    #[must_use]
-    pub fn with_tools(mut self, tools: ToolTable) -> Self {
-        self.lowering.tools = tools;
-        self
-    }
-
-    /// The same program, with `find` to give the text of a subroutine that stands in a file of its
-    /// own, by its name without ending.
-    #[must_use]
-    pub fn with_subroutines(
-        mut self,
-        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
-    ) -> Self {
-        self.find_subroutines(find);
-        self
-    }
-
-    /// The same program, for a machine with rotary axes A, B and C: their words are read, as are the
-    /// codes that make the tool tip the point that moves (`G43.4`, `M128`, `M428`).
-    #[must_use]
-    pub fn with_rotary_axes(mut self) -> Self {
-        self.block.rotary = true;
-        self
-    }
-
-    /// The same program, with the words of secondary axes U, V and W counted among its features. No
-    /// machine moves them, so that this is for looking at a program only.
-    #[must_use]
-    pub fn with_secondary_axes(mut self) -> Self {
-        self.block.secondary = true;
-        self
-    }
-
-    /// The same program, for a machine of this name: refusals of axes that it has not name it.
-    #[must_use]
-    pub fn for_machine(mut self, name: &str) -> Self {
-        self.block.machine = Arc::from(name);
-        self
-    }
-
-    /// The same program, in a language of axis words: RS274/NGC, as without this, or Sinumerik.
-    #[must_use]
-    pub fn in_language(mut self, language: Language) -> Self {
-        let jumps = language == Language::Sinumerik;
-        self.sinumerik = jumps.then(Sinumerik::default);
-        self.lowering.leads_to_normal = jumps;
-        self.flow.tape = jumps.then(|| Tape::new(&self.flow.file));
-        self
-    }
-
-    /// Where the rotary axes A, B and C are, degrees.
-    #[must_use]
-    pub fn rotary(&self) -> [f64; 3] {
-        self.lowering.rotary
-    }
-
-    /// The same program, going on behind refused lines so that all refusals are seen. What it yields
-    /// after the first of them is not what the program says.
-    #[must_use]
-    pub fn past_refusals(mut self) -> Self {
-        self.past_refusals = true;
-        self
-    }
-
-    /// `G` and `M` codes met so far, in order, and how often each.
-    pub fn codes(&self) -> impl Iterator<Item = (Code, u64)> + '_ {
-        self.block.codes()
-    }
-
-    /// Parts of the language met so far that are no code.
-    pub fn features(&self) -> impl Iterator<Item = &'static str> + '_ {
-        FEATURES
-            .into_iter()
-            .filter(|(bit, _)| self.block.features & bit != 0)
-            .map(|(_, name)| name)
-    }
-
-    /// Tools that were asked for so far, in order of their numbers; ten thousand at most.
-    pub fn tools_used(&self) -> impl Iterator<Item = u32> + '_ {
-        self.lowering.tools_used.iter().copied()
-    }
-
-    /// The line that the last refusal or the last moves came from.
-    #[must_use]
-    pub fn line_text(&self) -> std::borrow::Cow<'_, str> {
-        String::from_utf8_lossy(self.flow.text())
-    }
-
-    /// What should be known of the lines read so far; [`MOST_WARNINGS`] at most.
-    #[must_use]
-    pub fn warnings(&self) -> &[Warning] {
-        &self.warnings
-    }
-
-    /// How many warnings came after those that are kept.
-    #[must_use]
-    pub fn more_warnings(&self) -> u64 {
-        self.more_warnings
-    }
-
-    /// Lines with at least one word, read so far.
-    #[must_use]
-    pub fn blocks(&self) -> u64 {
-        self.blocks
-    }
-
-    /// Lines read so far.
-    #[must_use]
-    pub fn lines(&self) -> u64 {
-        self.flow.lines.count()
-    }
-
-    /// Where the moves yielded so far, and those of the line being read, lead.
-    #[must_use]
-    pub fn position(&self) -> Vector<3> {
-        self.lowering.position
-    }
-
-    /// Last spindle speed, as written; 0 before any.
-    #[must_use]
-    pub fn spindle_speed(&self) -> f64 {
-        self.lowering.modal.spindle_speed
-    }
-
-    /// Last tool; 0 before any.
-    #[must_use]
-    pub fn tool(&self) -> u32 {
-        self.lowering.modal.tool
     }
 
     /// Reads one line.
@@ -343,17 +208,6 @@ impl<R: BufRead> Program<R> {
 }
 
 impl<R: BufRead> Program<R> {
-    pub(crate) fn find_subroutines(
-        &mut self,
-        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
-    ) {
-        self.flow.find = Some(Box::new(find));
-    }
-
-    pub(crate) fn set_past_refusals(&mut self) {
-        self.past_refusals = true;
-    }
-
     /// A refusal of the line being read.
     pub(crate) fn refuse(&mut self, reason: Reason) -> ProgramError {
         if !self.past_refusals {

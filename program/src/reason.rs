@@ -4,7 +4,7 @@
 //! comes after the conversion of units; anything else is as written.
 
 use crate::arithmetic_error::ArithmeticError;
-use crate::codes::Code;
+use crate::code::Code;
 use crate::flow_error::FlowError;
 use crate::machining_error::MachiningError;
 use crate::statement_error::StatementError;

@@ -7,17 +7,18 @@
 use crate::block::Block;
 use crate::codes::{Distance, PathControl};
 use crate::error::{Fault, Notice, Remark};
-use crate::frame::Frame;
 use crate::lexer::Word;
 use crate::lower::Lowering;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
+use crate::sinumerik_codes::is_foreign;
+use crate::sinumerik_frame::FrameWord;
 use crate::sinumerik_reader::Reader;
 use crate::sinumerik_words::{Known, known};
 use crate::tools::ToolTable;
 use std::collections::BTreeMap;
-use toolglide_kinematics::{Tolerance, Vector};
+use toolglide_kinematics::Tolerance;
 
 /// Tools whose names are remembered.
 const MOST_TOOLS: usize = 1000;
@@ -29,22 +30,15 @@ pub(crate) struct Sinumerik {
     tools: BTreeMap<String, u32>,
 }
 
-/// A frame that a line sets or adds to.
-#[derive(Clone, Copy, PartialEq)]
-enum FrameWord {
-    Shift { added: bool },
-    Turn { added: bool },
-}
-
 /// A line being read.
-struct Line<'a> {
+pub(crate) struct Line<'a> {
     block: &'a mut Block,
-    state: &'a mut Lowering,
+    pub(crate) state: &'a mut Lowering,
     remarks: &'a mut Vec<Remark>,
-    frame: Option<(FrameWord, Span)>,
+    pub(crate) frame: Option<(FrameWord, Span)>,
     /// Words X, Y and Z of a frame.
-    offsets: [Option<f64>; 3],
-    dwell: bool,
+    pub(crate) offsets: [Option<f64>; 3],
+    pub(crate) dwell: bool,
 }
 
 impl Sinumerik {
@@ -111,7 +105,7 @@ impl Sinumerik {
 }
 
 impl Line<'_> {
-    fn add(&mut self, letter: u8, value: f64, span: Span) -> Result<(), Fault> {
+    pub(crate) fn add(&mut self, letter: u8, value: f64, span: Span) -> Result<(), Fault> {
         let word = Word {
             letter,
             value,
@@ -181,47 +175,6 @@ impl Line<'_> {
             (Distance::Incremental, Distance::Absolute) => value + here,
             _ => value,
         }
-    }
-
-    /// A `G` code, by the number that RS274/NGC has for it.
-    fn code(&mut self, value: f64, span: Span) -> Result<(), Fault> {
-        let number = value.round();
-        let is = |list: &[f64]| list.iter().any(|&one| (one - number).abs() < 0.5);
-        let same = [
-            0.0, 1.0, 2.0, 3.0, 17.0, 18.0, 19.0, 40.0, 41.0, 42.0, 53.0, 54.0, 55.0, 56.0, 57.0,
-            64.0, 90.0, 91.0, 93.0, 94.0, 97.0,
-        ];
-        if (value - number).abs() > 1e-9 {
-            return self.add(b'G', value, span);
-        }
-        // Fine ways of stopping, circles around corners, and the language of this page.
-        if is(&[290.0, 450.0, 601.0, 602.0, 603.0]) {
-            return Ok(());
-        }
-        if is(&[500.0]) {
-            self.state.offsets.set_origin(Vector::zeros(), 0.0);
-            self.state.program = self.state.offsets.in_program(self.state.position);
-            return Ok(());
-        }
-        let mapped = if is(&same) {
-            number
-        } else if is(&[4.0]) {
-            self.dwell = true;
-            4.0
-        } else if is(&[60.0, 9.0]) {
-            61.0
-        } else if is(&[641.0, 642.0, 643.0, 644.0, 645.0]) {
-            64.0
-        } else if is(&[70.0, 700.0]) {
-            20.0
-        } else if is(&[71.0, 710.0]) {
-            21.0
-        } else if is(&[153.0]) {
-            53.0
-        } else {
-            return Err(unknown(&format!("G{number}"), span));
-        };
-        self.add(b'G', mapped, span)
     }
 
     /// A word of several letters.
@@ -339,61 +292,9 @@ impl Line<'_> {
         }
         Ok(())
     }
-
-    /// Sets the frame that the line speaks of.
-    fn set_frame(&mut self) -> Result<(), Fault> {
-        let Some((word, span)) = self.frame else {
-            return Ok(());
-        };
-        let state = &mut *self.state;
-        let units = state.modal.units;
-        let mut frame = state.offsets.frame();
-        match word {
-            FrameWord::Shift { added } => {
-                if !added {
-                    frame = Frame::NONE;
-                }
-                let shift =
-                    Vector::<3>::from_fn(|axis, _| units.length(self.offsets[axis].unwrap_or(0.0)));
-                if shift.amax() > crate::units::FARTHEST {
-                    let (value, bound) = (shift.amax(), crate::units::FARTHEST);
-                    let reason = Reason::TooFar {
-                        letter: 'X',
-                        value,
-                        bound,
-                    };
-                    return Err(Fault::new(span, reason));
-                }
-                frame = frame.shifted(shift);
-            }
-            FrameWord::Turn { added } => {
-                if !added {
-                    frame = Frame::NONE;
-                }
-                // About Z, then the new Y, then the new X.
-                for axis in [2, 1, 0] {
-                    if let Some(degrees) = self.offsets[axis] {
-                        frame = frame.turned(axis, degrees);
-                    }
-                }
-            }
-        }
-        state.offsets.set_frame(frame);
-        state.program = state.offsets.in_program(state.position);
-        Ok(())
-    }
 }
 
-/// Codes of RS274/NGC alone.
-fn is_foreign(value: f64) -> bool {
-    [
-        62.0, 63.0, 64.0, 65.0, 66.0, 67.0, 68.0, 70.0, 71.0, 72.0, 73.0, 98.0, 99.0,
-    ]
-    .iter()
-    .any(|one| (one - value).abs() < 0.5)
-}
-
-fn unknown(word: &str, span: Span) -> Fault {
+pub(crate) fn unknown(word: &str, span: Span) -> Fault {
     let word = word.into();
     Fault::new(span, Reason::UnknownWord { word })
 }

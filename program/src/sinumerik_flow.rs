@@ -10,86 +10,10 @@ use crate::flow_error::FlowError;
 use crate::lower::Lowering;
 use crate::place::Span;
 use crate::reason::Reason;
+use crate::sinumerik_line::{Beginning, block_order};
 use crate::sinumerik_reader::Reader;
 use crate::tape::Tape;
 use std::io::BufRead;
-
-/// Words about the order of lines that stand first.
-const ORDERS: [&str; 15] = [
-    "IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "FOR", "ENDFOR", "LOOP", "ENDLOOP", "REPEAT",
-    "UNTIL", "GOTOF", "GOTOB", "GOTO", "GOTOC",
-];
-
-/// How a line begins.
-struct Beginning {
-    /// Its jump mark, in upper case.
-    label: Option<String>,
-    /// Its number behind `N`.
-    number: Option<String>,
-    /// The word about the order of lines, if it is one.
-    order: Option<&'static str>,
-    /// Where that word, or the first other one, stands, and where it ends.
-    start: usize,
-    end: usize,
-}
-
-impl Beginning {
-    fn of(line: &[u8]) -> Self {
-        let mut reader = Reader::new(line);
-        let mut number = None;
-        reader.skip_blanks();
-        if matches!(reader.peek(), Some(b'N' | b'n')) {
-            let start = reader.at;
-            let name = reader.next_name();
-            if name.len() > 1 && name[1..].bytes().all(|byte| byte.is_ascii_digit()) {
-                number = Some(name[1..].trim_start_matches('0').to_owned());
-            } else {
-                reader.at = start;
-            }
-        }
-        reader.skip_blanks();
-        let mut start = reader.at;
-        let mut name = reader.next_name();
-        let mut label = None;
-        if name.len() > 1 && reader.peek() == Some(b':') {
-            reader.at += 1;
-            label = Some(name);
-            reader.skip_blanks();
-            start = reader.at;
-            name = reader.next_name();
-        }
-        let order = ORDERS.into_iter().find(|order| *order == name);
-        Self {
-            label,
-            number,
-            order,
-            start,
-            end: reader.at,
-        }
-    }
-
-    fn is(&self, target: &str) -> bool {
-        let numbered = target.strip_prefix('N');
-        let number = numbered.map(|digits| digits.trim_start_matches('0'));
-        self.label.as_deref() == Some(target)
-            || number.is_some() && self.number.as_deref() == number
-    }
-}
-
-/// The order of a line, with `IF` only where it begins a block.
-fn order(line: &[u8]) -> Option<&'static str> {
-    let beginning = Beginning::of(line);
-    let order = beginning.order?;
-    if order == "IF" {
-        let rest = line.get(beginning.end..).unwrap_or_default();
-        let rest = rest.split(|&byte| byte == b';').next().unwrap_or_default();
-        let jumps = rest
-            .windows(4)
-            .any(|word| word.eq_ignore_ascii_case(b"GOTO"));
-        return (!jumps).then_some(order);
-    }
-    Some(order)
-}
 
 impl<R: BufRead> Flow<R> {
     /// Obeys the line being run if it is about the order of lines; else where its words begin.
@@ -102,7 +26,7 @@ impl<R: BufRead> Flow<R> {
         let span = Span::new(beginning.start, beginning.end);
         let mut reader = Reader::new(&line);
         reader.at = beginning.end;
-        if let Some(opening @ ("IF" | "WHILE" | "FOR" | "LOOP" | "REPEAT")) = self::order(&line) {
+        if let Some(opening @ ("IF" | "WHILE" | "FOR" | "LOOP" | "REPEAT")) = block_order(&line) {
             self.expect_end(span, opening)?;
         }
         match order {
@@ -286,7 +210,7 @@ impl<R: BufRead> Flow<R> {
         let here = self.tape_index();
         let mut depth = 0_u32;
         let found = self.seek(|line| {
-            let met = order(line)?;
+            let met = block_order(line)?;
             if met == opening {
                 depth += 1;
             } else if depth == 0 && ends.contains(&met) {
@@ -315,7 +239,7 @@ impl<R: BufRead> Flow<R> {
         opening: &'static str,
     ) -> Result<usize, Fault> {
         let mut depth = 0_u32;
-        let found = self.tape_before(|line| match order(line) {
+        let found = self.tape_before(|line| match block_order(line) {
             Some(met) if met == keyword => {
                 depth += 1;
                 false

@@ -3,7 +3,8 @@
 //! Source: RS274/NGC, where a word without a use is an error. Not here: what the words say.
 
 use crate::block::{Block, POINT};
-use crate::codes::{Code, Group, Motion, Once, PathControl, Side, Subprogram, ToolLength};
+use crate::code::Code;
+use crate::codes::{Group, Motion, Once, PathControl, Side, Subprogram, ToolLength};
 use crate::error::{Fault, Notice, Remark};
 use crate::place::Span;
 use crate::reason::Reason;

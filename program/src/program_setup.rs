@@ -1,0 +1,83 @@
+//! What a program is told before its first line: tools, subroutines, axes, language.
+//!
+//! Not here: reading.
+
+use crate::language::Language;
+use crate::program::Program;
+use crate::sinumerik::Sinumerik;
+use crate::tape::Tape;
+use crate::tools::ToolTable;
+use std::io::BufRead;
+use std::sync::Arc;
+
+impl<R: BufRead> Program<R> {
+    /// The same program, with the tools of the machine.
+    #[must_use]
+    pub fn with_tools(mut self, tools: ToolTable) -> Self {
+        self.lowering.tools = tools;
+        self
+    }
+
+    /// The same program, with `find` to give the text of a subroutine that stands in a file of its
+    /// own, by its name without ending.
+    #[must_use]
+    pub fn with_subroutines(
+        mut self,
+        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
+    ) -> Self {
+        self.find_subroutines(find);
+        self
+    }
+
+    /// The same program, for a machine with rotary axes A, B and C: their words are read, as are the
+    /// codes that make the tool tip the point that moves (`G43.4`, `M128`, `M428`).
+    #[must_use]
+    pub fn with_rotary_axes(mut self) -> Self {
+        self.block.rotary = true;
+        self
+    }
+
+    /// The same program, with the words of secondary axes U, V and W counted among its features. No
+    /// machine moves them, so that this is for looking at a program only.
+    #[must_use]
+    pub fn with_secondary_axes(mut self) -> Self {
+        self.block.secondary = true;
+        self
+    }
+
+    /// The same program, for a machine of this name: refusals of axes that it has not name it.
+    #[must_use]
+    pub fn for_machine(mut self, name: &str) -> Self {
+        self.block.machine = Arc::from(name);
+        self
+    }
+
+    /// The same program, in a language of axis words: RS274/NGC, as without this, or Sinumerik.
+    #[must_use]
+    pub fn in_language(mut self, language: Language) -> Self {
+        let jumps = language == Language::Sinumerik;
+        self.sinumerik = jumps.then(Sinumerik::default);
+        self.lowering.leads_to_normal = jumps;
+        self.flow.tape = jumps.then(|| Tape::new(&self.flow.file));
+        self
+    }
+
+    /// The same program, going on behind refused lines so that all refusals are seen. What it yields
+    /// after the first of them is not what the program says.
+    #[must_use]
+    pub fn past_refusals(mut self) -> Self {
+        self.past_refusals = true;
+        self
+    }
+
+    pub(crate) fn find_subroutines(
+        &mut self,
+        find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
+    ) {
+        self.flow.find = Some(Box::new(find));
+    }
+
+    pub(crate) fn set_past_refusals(&mut self) {
+        self.past_refusals = true;
+    }
+}
