@@ -19,6 +19,9 @@ use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector, WindowTally};
 /// What is handed out of a window, in times to stop.
 const COMMIT: f64 = 4.0;
 
+/// Of a window that is cut short, one span in so many is not handed out.
+const UNCOMMITTED: usize = 3;
+
 /// How much longer a window up to a stop of the path may be, in times to stop: then what is left is
 /// planned at once.
 const LONGER: f64 = 2.5;
@@ -30,7 +33,7 @@ const REFINED: f64 = 1.3;
 const FEWEST_SPANS: usize = 4;
 
 /// Most spans of a window.
-pub(crate) const MOST_SPANS: usize = 64;
+pub(crate) const MOST_SPANS: usize = 100;
 
 /// Most intervals of a window: rounding grows with the sixth power of their number.
 const MOST_STEPS: usize = 560;
@@ -257,7 +260,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             let part = if closing && planned == known {
                 known
             } else {
-                first.min(planned.saturating_sub(2)).max(1)
+                first.min(planned - planned.div_ceil(UNCOMMITTED)).max(1)
             };
             self.commit(part);
         } else {

@@ -210,11 +210,11 @@ impl<const N: usize> Race<N> {
             let lane = self.lane.unwrap_or_else(|| {
                 self.stretches += u64::from(moved);
                 if self.walked_time < theirs - TIME_SLACK || !moved {
-                    Lane::Mine
-                } else {
-                    self.yielded += 1;
-                    Lane::Theirs
+                    return Lane::Mine;
                 }
+                // A line alone is the same for both.
+                self.yielded += u64::from(theirs < self.walked_time - TIME_SLACK);
+                Lane::Theirs
             });
             match lane {
                 Lane::Mine => drop(self.theirs.drain(..bound.pieces)),
