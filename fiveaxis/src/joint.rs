@@ -4,6 +4,7 @@
 //! kinematics at the poses and at way-points between them, then every axis for itself. Where the
 //! tool goes between is nobody's concern. Not here: tool motion.
 
+use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
 use crate::lay::scaled;
@@ -23,6 +24,17 @@ pub(crate) struct JointBlock {
 }
 
 impl JointBlock {
+    /// The straight move of all axes in place of a block of tool motion.
+    pub(crate) fn between(block: &PoseBlock, start: AxisVector, end: AxisVector) -> Self {
+        Self {
+            leg: block.leg,
+            line: block.line,
+            start,
+            end,
+            duration: block.duration,
+        }
+    }
+
     /// The least duration within the limits of all axes, and the limit that asks for it.
     pub(crate) fn least_duration(&self, axes: &[Axis], chain: &FilterChain) -> (f64, Worst) {
         let [long, short] = *chain.time_constants() else {

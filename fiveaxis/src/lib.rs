@@ -14,6 +14,7 @@ mod joint;
 mod lay;
 mod planner;
 mod pole;
+mod pulses;
 mod relax;
 mod resolve;
 mod sampler;
@@ -25,6 +26,7 @@ mod steps;
 mod timing;
 mod tool;
 mod way;
+mod window;
 
 pub use block::PoseBlock;
 pub use corner::PoseCorner;

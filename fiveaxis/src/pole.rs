@@ -9,22 +9,86 @@ use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::way::Way;
 use toolglide_kinematics::{
-    Axis, AxisKind, AxisVector, GreatCircle, MachineKinematics, ToolPose, Vector, turned,
+    Axis, AxisKind, AxisVector, GreatCircle, MachineKinematics, OrientationTolerance, ToolPose,
+    Vector, angle_between, turned,
 };
 
 /// Angle by which a block has left a pole where it is asked for the axes, rad: far enough for the
 /// rounding of orientations, near enough for every direction to be that of the start.
 const PROBE: f64 = 1e-5;
 
-/// Axes that differ by less stand at the same place, rad.
-const SAME_PLACE: f64 = 1e-8;
+/// Axes that differ by less stand at the same place, rad: some hundred roundings of an angle.
+const SAME_PLACE: f64 = 1e-12;
 
 /// How far the tool leans while an axis turns, as a share of its tolerance; and at most, rad.
 const LEAN: f64 = 0.2;
 const MOST_LEAN: f64 = 1e-3;
 
 /// Orientations found in two ways differ by less than this, rad.
-const AGREES: f64 = 1e-9;
+const AGREES: f64 = 1e-12;
+
+/// Orientations nearer to a pole than this are at the pole, rad: an arc second. Nearer to it the rounding of an
+/// orientation turns an axis by more than its limits allow for.
+const AT_POLE: f64 = 5e-6;
+
+/// The same as a share of the tolerance of the orientation.
+const AT_POLE_SHARE: f64 = 0.05;
+
+/// A pose with its tool at the pole of the machine where it is as good as there.
+pub(crate) fn at_pole(
+    machine: &dyn MachineKinematics,
+    pose: &ToolPose,
+    tolerance: OrientationTolerance,
+) -> ToolPose {
+    let near = AT_POLE.min(AT_POLE_SHARE * tolerance.angle());
+    machine
+        .pole(&pose.orientation())
+        .filter(|pole| angle_between(pole, &pose.orientation()) < near)
+        .and_then(|pole| ToolPose::new(pose.tip(), pole).ok())
+        .unwrap_or(*pose)
+}
+
+/// A turn that misses the pole by less goes through it, rad: some thousand roundings of an orientation.
+const THROUGH: f64 = 1e-12;
+
+/// The block in parts: two where it passes a pole so near that it is as good as there, each to or from the pole
+/// itself; else the block.
+pub(crate) fn parts_at_pole(
+    block: &PoseBlock,
+    machine: &dyn MachineKinematics,
+) -> Result<(PoseBlock, Option<PoseBlock>), FiveAxisError> {
+    let whole = Ok((*block, None));
+    let (start, end, axis) = (block.turn.start(), block.turn.end(), block.turn.axis());
+    let near = AT_POLE.min(AT_POLE_SHARE * block.orientation_tolerance);
+    let Some(pole) = machine.pole(&block.turn.at(0.5)) else {
+        return whole;
+    };
+    let miss = axis.dot(&pole).abs();
+    let inside = axis.cross(&start).dot(&pole) > near && end.cross(&axis).dot(&pole) > near;
+    if !(THROUGH < miss && miss < near && inside) {
+        return whole;
+    }
+    let made = || {
+        let pose = |orientation| ToolPose::new(block.start, orientation);
+        let to = GreatCircle::between(&pose(start)?, &pose(pole)?)?;
+        let from = GreatCircle::between(&pose(pole)?, &pose(end)?)?;
+        Ok((to, from))
+    };
+    let (to, from) = made().map_err(|reason| FiveAxisError::Path {
+        index: block.leg,
+        reason,
+    })?;
+    let share = to.angle() / (to.angle() + from.angle());
+    let first = PoseBlock {
+        turn: to,
+        ..block.part(0.0, share)
+    };
+    let second = PoseBlock {
+        turn: from,
+        ..block.part(share, 1.0)
+    };
+    Ok((first, Some(second)))
+}
 
 /// An axis that must turn at rest, because the tool does not tell where it is.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +110,12 @@ impl Spin {
         at: &AxisVector,
     ) -> Result<(Option<Way>, Option<Self>), FiveAxisError> {
         let way = Way::along(block, machine, at);
+        let start = block.turn.start();
+        let at_pole = machine
+            .pole(&start)
+            .is_some_and(|pole| angle_between(&pole, &start) < THROUGH);
         match way {
-            Ok(way) if way.known().is_some() => return Ok((Some(way), None)),
+            Ok(way) if way.known().is_some() && !at_pole => return Ok((Some(way), None)),
             _ if block.turn.angle() < PROBE => return way.map(|way| (Some(way), None)),
             _ => {}
         }
@@ -86,11 +154,18 @@ impl Spin {
         machine: &dyn MachineKinematics,
         at: &AxisVector,
     ) -> Result<AxisVector, FiveAxisError> {
-        let way = match Self::before(block, machine, at)? {
-            (Some(way), _) => way,
-            (None, spin) => Way::along(block, machine, spin.as_ref().map_or(at, |spin| &spin.to))?,
-        };
-        Ok(*way.last())
+        let (first, second) = parts_at_pole(block, machine)?;
+        let mut at = *at;
+        for part in [Some(first), second].into_iter().flatten() {
+            let way = match Self::before(&part, machine, &at)? {
+                (Some(way), _) => way,
+                (None, spin) => {
+                    Way::along(&part, machine, spin.as_ref().map_or(&at, |spin| &spin.to))?
+                }
+            };
+            at = *way.last();
+        }
+        Ok(at)
     }
 
     fn refused(&self, block: &PoseBlock, axes: &[Axis]) -> FiveAxisError {
@@ -136,10 +211,15 @@ impl Spin {
         };
         let (first, last) = (leaning(&self.from)?, leaning(&self.to)?);
         let angle = self.to[self.axis] - self.from[self.axis];
-        let sense = [angle, -angle]
-            .into_iter()
-            .find(|angle| (turned(&first, &upright, *angle) - last).norm() < AGREES)
-            .ok_or_else(refused)?;
+        let miss = |angle: f64| (turned(&first, &upright, angle) - last).norm();
+        let sense = if miss(angle) <= miss(-angle) {
+            angle
+        } else {
+            -angle
+        };
+        if miss(sense) > AGREES {
+            return Err(refused());
+        }
         let pose = |orientation: Vector<3>| ToolPose::new(block.start, orientation);
         let made = |turn| PoseBlock {
             end: block.start,

@@ -7,8 +7,8 @@
 
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
-use crate::lay::{intervals, knots_within};
 use crate::steps::Steps;
+use crate::window::{differs, next_window};
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::Axis;
 
@@ -41,9 +41,6 @@ const FIRM: f64 = 1.05;
 
 /// Blocks that are slower than this share of the fastest one under way are not slowed down further.
 const SLOW: f64 = 0.5;
-
-/// Instants nearer than this are one, s.
-const SAME_INSTANT: f64 = 1e-12;
 
 /// A limit exceeded more than this is approached by what is surely needed, and no more.
 const FAR: f64 = 1.3;
@@ -247,85 +244,4 @@ fn factor(worst: Worst, answer: Option<Answer>) -> f64 {
         [1.0, 0.75, 0.6][order]
     };
     share.powf(power).max(1.0)
-}
-
-/// Blocks in a row that have changed, or exceed a limit, with those under way at the same time.
-struct Window {
-    /// First and last block under way.
-    range: [usize; 2],
-    /// Last block that has changed.
-    last: usize,
-    begin: f64,
-    end: f64,
-}
-
-impl Window {
-    /// Hands on the intervals of the window with the blocks under way.
-    fn measure(
-        &self,
-        steps: &[Steps],
-        chain: &FilterChain,
-        mut take: impl FnMut([f64; 2], [usize; 2]) -> Result<(), FiveAxisError>,
-    ) -> Result<(), FiveAxisError> {
-        let [low, high] = self.range;
-        let steps = &steps[low..=high];
-        let knots = knots_within(steps, chain, [self.begin, self.end]);
-        for (interval, [oldest, newest]) in intervals(steps, &knots, chain) {
-            take(interval, [oldest + low, newest + low])?;
-        }
-        Ok(())
-    }
-}
-
-/// The next blocks to be measured, from `first` on.
-fn next_window(
-    fresh: &[bool],
-    still: &[bool],
-    first: usize,
-    steps: &[Steps],
-    chain: &FilterChain,
-) -> Option<Window> {
-    let delay = chain.total_delay();
-    let wanted = |block: usize| fresh[block] || still[block];
-    let start = (first..steps.len()).find(|&block| wanted(block))?;
-    let begin = steps[start].begin();
-    let mut low = start;
-    while low > 0 && steps[low - 1].command_end() + delay > begin {
-        low -= 1;
-    }
-    let (mut last, mut high) = (start, start);
-    let mut end = steps[start].command_end() + delay;
-    loop {
-        while high + 1 < steps.len() && steps[high + 1].begin() < end {
-            high += 1;
-        }
-        let Some(next) = (last + 1..=high).rev().find(|&block| wanted(block)) else {
-            break;
-        };
-        last = next;
-        end = end.max(steps[last].command_end() + delay);
-    }
-    Some(Window {
-        range: [low, high],
-        last,
-        begin,
-        end,
-    })
-}
-
-/// Whether a block has changed in time but for when it begins, or the way to the next has.
-fn differs(before: &[Steps], now: &[Steps], block: usize) -> bool {
-    let (then, this) = (&before[block], &now[block]);
-    let shifts = this.begin() - then.begin();
-    let near = |one: f64, two: f64| (one - two - shifts).abs() <= SAME_INSTANT;
-    let same = this.times().count() == then.times().count()
-        && this
-            .times()
-            .zip(then.times())
-            .all(|(now, then)| near(now, then));
-    let next = match (now.get(block + 1), before.get(block + 1)) {
-        (Some(now), Some(then)) => near(now.begin(), then.begin()),
-        _ => true,
-    };
-    !(same && next)
 }

@@ -6,7 +6,7 @@
 
 use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
-use crate::pole::Spin;
+use crate::pole::{Spin, at_pole};
 use toolglide_kinematics::numeric::SAME_ORIENTATION;
 use toolglide_kinematics::{
     AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,
@@ -93,6 +93,7 @@ impl<'m> Resolver<'m> {
         let (end, axes) = match *next.end() {
             PoseEnd::Dwell { duration } => return Ok(leg(PosePath::Dwell { duration })),
             PoseEnd::Pose(pose) => {
+                let pose = at_pole(self.machine, &pose, self.orientation_tolerance);
                 // What is wrong with the move itself comes before what the machine says.
                 self.turn(index, &pose)?;
                 let axes = self.machine.inverse(&pose, &self.at).map_err(machine)?;

@@ -5,7 +5,7 @@
 //! nearest first, until one stays within travel. Not here: motion.
 
 use crate::block::PoseBlock;
-use crate::pole::Spin;
+use crate::pole::{Spin, at_pole};
 use std::f64::consts::TAU;
 use toolglide_kinematics::{
     AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,
@@ -27,7 +27,9 @@ const BEYOND: f64 = 1e-3;
 /// # Examples
 /// ```
 /// use toolglide_fiveaxis::start_of;
-/// use toolglide_kinematics::{AxisVector, PoseEnd, PoseFeed, PoseMove, Tolerance, ToolPose, Vector};
+/// use toolglide_kinematics::{
+///     AxisVector, OrientationTolerance, PoseEnd, PoseFeed, PoseMove, Tolerance, ToolPose, Vector,
+/// };
 ///
 /// let model = toolglide_machines::find("head-table-bc")?;
 /// let machine = (model.build)(&(model.preset)())?;
@@ -38,9 +40,10 @@ const BEYOND: f64 = 1e-3;
 ///     Ok(PoseMove::new(end, PoseFeed::Duration(1.0), Tolerance::new(0.01)?)?)
 /// };
 /// let near = AxisVector::zeros(5);
-/// let start = start_of(machine.as_ref(), &[leaning(0.2)?, leaning(0.4)?], &near)?;
+/// let within = OrientationTolerance::new(0.001)?;
+/// let start = start_of(machine.as_ref(), &[leaning(0.2)?, leaning(0.4)?], &near, within)?;
 /// assert!((start[3] + 0.2).abs() < 1e-9, "B stays on its side: {start:?}");
-/// let start = start_of(machine.as_ref(), &[leaning(0.2)?, leaning(1.0)?], &near)?;
+/// let start = start_of(machine.as_ref(), &[leaning(0.2)?, leaning(1.0)?], &near, within)?;
 /// assert!((start[3] - 0.2).abs() < 1e-9, "B could not go on there: {start:?}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -48,9 +51,10 @@ pub fn start_of(
     machine: &dyn MachineKinematics,
     moves: &[PoseMove],
     near: &AxisVector,
+    tolerance: OrientationTolerance,
 ) -> Result<AxisVector, KinematicsError> {
     let mut poses = moves.iter().filter_map(|next| match next.end() {
-        PoseEnd::Pose(pose) => Some(*pose),
+        PoseEnd::Pose(pose) => Some(at_pole(machine, pose, tolerance)),
         _ => None,
     });
     let Some(first) = poses.next() else {
@@ -66,7 +70,7 @@ pub fn start_of(
         let Ok(at) = machine.follow(&first, &at) else {
             continue;
         };
-        let followed = followed(machine, moves, at);
+        let followed = followed(machine, moves, at, tolerance);
         if best.is_none_or(|(_, most)| followed > most) {
             best = Some((at, followed));
         }
@@ -118,12 +122,17 @@ fn candidates(
 }
 
 /// How many moves can be followed from axis positions that take the first pose.
-fn followed(machine: &dyn MachineKinematics, moves: &[PoseMove], start: AxisVector) -> usize {
+fn followed(
+    machine: &dyn MachineKinematics,
+    moves: &[PoseMove],
+    start: AxisVector,
+    tolerance: OrientationTolerance,
+) -> usize {
     let mut at = start;
     let mut pose: Option<ToolPose> = None;
     for (index, next) in moves.iter().enumerate() {
         let end = match next.end() {
-            PoseEnd::Pose(end) => *end,
+            PoseEnd::Pose(end) => at_pole(machine, end, tolerance),
             PoseEnd::Dwell { .. } => continue,
             // Words of axes say themselves where the axes go.
             _ => return moves.len(),

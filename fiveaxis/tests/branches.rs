@@ -82,7 +82,7 @@ fn a_path_that_leaves_the_travel_on_one_branch_is_planned_on_the_other() {
     assert!(nearest[3] < 0.0, "the nearest branch is the short one");
     let refused = legs(machine.as_ref(), nearest, &moves).unwrap_err();
     assert!(refused.to_string().contains("axis B"), "{refused}");
-    let start = start_of(machine.as_ref(), &moves, &zero).unwrap();
+    let start = start_of(machine.as_ref(), &moves, &zero, tolerance()).unwrap();
     let [low, high] = range_of(machine.as_ref(), &axes, start, &moves, 3);
     assert!(
         (low - 0.2).abs() < 1e-3 && (high - 0.9).abs() < 1e-3,
@@ -100,7 +100,7 @@ fn a_path_of_many_turns_starts_where_the_travel_is_long_enough() {
             leaning(f64::from(step), 0.5, spin, cut())
         })
         .collect();
-    let start = start_of(machine.as_ref(), &moves, &AxisVector::zeros(5)).unwrap();
+    let start = start_of(machine.as_ref(), &moves, &AxisVector::zeros(5), tolerance()).unwrap();
     let [low, high] = range_of(machine.as_ref(), &axes, start, &moves, 4);
     assert!(
         (high - low - 600.0_f64.to_radians()).abs() < 1e-6,

@@ -2,9 +2,13 @@
 
 mod common;
 
-use common::{judge, legs, plan, settings, start_of, table_ac};
+use common::{judge, legs, plan, pose, settings, start_of, table_ac};
 use proptest::prelude::*;
-use toolglide_fiveaxis::PoseMethod;
+use toolglide_fiveaxis::{PoseMethod, Resolver, start_of as start_of_moves};
+use toolglide_kinematics::{
+    AxisVector, Feedrate, OrientationTolerance, PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath,
+    Tolerance, Vector,
+};
 use toolglide_machines::find;
 
 /// A pose whose tool leans by so much along X and Y.
@@ -19,8 +23,8 @@ fn moves_past_the_pole_at_any_distance_keep_every_limit() {
         let model = find(name).unwrap();
         let machine = (model.build)(&(model.preset)()).unwrap();
         let axes = machine.axes().to_vec();
-        for case in 0..150_u32 {
-            let distance = 1e-4 * 500.0_f64.powf(f64::from(case / 6) / 24.0);
+        for case in 0..300_u32 {
+            let distance = 1e-10 * 5e8_f64.powf(f64::from(case / 6) / 49.0);
             let from = [0.05, 0.2, 0.4][case as usize % 3];
             let length = if case % 2 == 0 { 20.0 } else { 1.0 };
             let (sin, cos) = (0.7 + 1.3 * f64::from(case)).sin_cos();
@@ -87,6 +91,33 @@ fn a_path_that_starts_or_turns_at_the_pole_rests_there_while_one_axis_turns() {
             );
         }
     }
+}
+
+#[test]
+fn poses_an_arc_second_beside_the_pole_are_at_the_pole() {
+    let (machine, axes) = table_ac();
+    let tolerance = OrientationTolerance::new(0.001).unwrap();
+    let moves = [[0.2, 0.1], [3e-6, -2e-6], [-0.1, 0.2]].map(|lean| {
+        let end = PoseEnd::Pose(pose(&leaning([100.0 * lean[0], 0.0, 0.0], lean)));
+        let feed = PoseFeed::Speed(Feedrate::new(50.0).unwrap());
+        PoseMove::new(end, feed, Tolerance::new(0.05).unwrap()).unwrap()
+    });
+    let start = start_of_moves(machine.as_ref(), &moves, &AxisVector::zeros(5), tolerance).unwrap();
+    let mut resolver = Resolver::new(machine.as_ref(), start, tolerance).unwrap();
+    let legs: Vec<PoseLeg> = moves
+        .iter()
+        .map(|next| resolver.leg(next).unwrap())
+        .collect();
+    assert!(
+        matches!(&legs[1].path, PosePath::Tool { turn, .. } if (turn.end() - Vector::<3>::z()).norm() < 1e-15),
+        "{:?}",
+        legs[1]
+    );
+    let settings = settings([0.05, 0.025], PoseMethod::DwellControlled);
+    let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
+    let report = judge(machine.as_ref(), &axes, &legs, &planned);
+    assert!(report.passes(), "{:#?}", report.examples);
+    assert!(report.cycle_time < 4.0, "{} s", report.cycle_time);
 }
 
 proptest! {

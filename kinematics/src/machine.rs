@@ -9,6 +9,7 @@ use crate::numeric::ANGLE_SLACK;
 use crate::pose::ToolPose;
 use crate::sample::SamplePeriod;
 use crate::tolerance::Tolerance;
+use crate::vector::Vector;
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
@@ -104,6 +105,14 @@ pub trait MachineKinematics: Send + Sync {
             }
         }
         Ok(axes)
+    }
+
+    /// The pole next to a tool orientation: the orientation at which one axis may stand anywhere, and beside
+    /// which it turns the faster the nearer the tool is. `None` for a machine that has none, or does not
+    /// say.
+    fn pole(&self, orientation: &Vector<3>) -> Option<Vector<3>> {
+        let _ = orientation;
+        None
     }
 
     /// The axis positions of every branch that can take `pose` within travel, the nearest to `near`

@@ -8,7 +8,7 @@ use crate::error::MachineError;
 use crate::geometry::{Distance, WORKPIECE};
 use crate::registry::MachineModel;
 use crate::structure::{Assembly, Branches, Structure};
-use crate::swivel::{Swivel, about_y, about_z, axes};
+use crate::swivel::{Swivel, about_y, about_z, axes, pole};
 use toolglide_kinematics::{KinematicsError, MachineKinematics, ToolPose, Vector};
 
 const GEOMETRY: [Distance; 6] = [
@@ -61,6 +61,10 @@ impl Structure<5> for HeadBc {
             branches.push([slide.x, slide.y, slide.z, swivel.tilt, swivel.spin]);
         }
         Ok(branches)
+    }
+
+    fn pole(&self, orientation: &Vector<3>) -> Option<Vector<3>> {
+        pole(orientation)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::error::MachineError;
 use crate::geometry::{Distance, WORKPIECE_ON_TABLE};
 use crate::registry::MachineModel;
 use crate::structure::{Assembly, Branches, Structure};
-use crate::swivel::{Swivel, about_y, about_z, axes, back};
+use crate::swivel::{Swivel, about_y, about_z, axes, back, pole};
 use toolglide_kinematics::{KinematicsError, MachineKinematics, ToolPose, Vector};
 
 const GEOMETRY: [Distance; 7] = [
@@ -63,6 +63,10 @@ impl Structure<5> for HeadTableBc {
             branches.push([slide.x, slide.y, slide.z, swivel.tilt, swivel.spin]);
         }
         Ok(branches)
+    }
+
+    fn pole(&self, orientation: &Vector<3>) -> Option<Vector<3>> {
+        pole(orientation)
     }
 }
 

@@ -33,6 +33,12 @@ pub trait Structure<const N: usize>: Send + Sync {
     /// # Errors
     /// [`KinematicsError::Unreachable`] or [`KinematicsError::Reach`] when there is none.
     fn branches(&self, pose: &ToolPose, near: &[f64; N]) -> Result<Branches<N>, KinematicsError>;
+
+    /// The pole next to an orientation, as [`MachineKinematics::pole`] says.
+    fn pole(&self, orientation: &Vector<3>) -> Option<Vector<3>> {
+        let _ = orientation;
+        None
+    }
 }
 
 /// The joints of every branch that gives one pose.
@@ -315,6 +321,10 @@ impl<S: Structure<N> + 'static, const N: usize> MachineKinematics for Assembly<S
                 reason: "no branch of the machine gives it",
             }),
         }
+    }
+
+    fn pole(&self, orientation: &Vector<3>) -> Option<Vector<3>> {
+        self.structure.pole(orientation)
     }
 
     fn solutions(&self, pose: &ToolPose, near: &AxisVector) -> Result<Solutions, KinematicsError> {

@@ -25,6 +25,15 @@ pub(crate) const fn axes(tilt: char) -> [(char, AxisKind); 5] {
     ]
 }
 
+/// The pole next to a direction, which leaves the spin open.
+#[allow(
+    clippy::unnecessary_wraps,
+    reason = "it is what machines answer, of which some have no pole"
+)]
+pub(crate) fn pole(direction: &Vector<3>) -> Option<Vector<3>> {
+    Some(Vector::<3>::new(0.0, 0.0, 1.0_f64.copysign(direction.z)))
+}
+
 /// A tilt and a spin with their sines and cosines.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swivel {

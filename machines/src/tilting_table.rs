@@ -8,7 +8,7 @@ use crate::config::{AxisConfig, MachineConfig};
 use crate::error::MachineError;
 use crate::geometry::Distance;
 use crate::structure::{Assembly, Branches, Structure};
-use crate::swivel::{Swivel, about_z, axes, back};
+use crate::swivel::{Swivel, about_z, axes, back, pole};
 use toolglide_kinematics::{KinematicsError, MachineKinematics, ToolPose, Vector};
 
 /// The distances of a tilting table whose tilting axis has this letter, small and capital.
@@ -112,6 +112,10 @@ impl Structure<5> for TiltingTable {
             branches.push([point.x, point.y, z, swivel.tilt, swivel.spin]);
         }
         Ok(branches)
+    }
+
+    fn pole(&self, orientation: &Vector<3>) -> Option<Vector<3>> {
+        pole(orientation)
     }
 }
 

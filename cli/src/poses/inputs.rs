@@ -180,12 +180,16 @@ impl Legs<'_> {
             return Ok(());
         };
         let line = first.line();
-        self.start = start_of(self.machine, self.ahead.make_contiguous(), &self.start).map_err(
-            |reason| {
-                let reason = FiveAxisError::Machine { index: 0, reason };
-                refused(&self.name, line, reason)
-            },
-        )?;
+        self.start = start_of(
+            self.machine,
+            self.ahead.make_contiguous(),
+            &self.start,
+            self.orientation_tolerance,
+        )
+        .map_err(|reason| {
+            let reason = FiveAxisError::Machine { index: 0, reason };
+            refused(&self.name, line, reason)
+        })?;
         Ok(())
     }
 

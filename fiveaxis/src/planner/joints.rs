@@ -38,13 +38,9 @@ impl PosePlanner<'_> {
                 } else {
                     *way.last()
                 };
-                joints.push(JointBlock {
-                    leg: block.leg,
-                    line: block.line,
-                    start,
-                    end,
-                    duration: block.duration / parts,
-                });
+                let mut joint = JointBlock::between(block, start, end);
+                joint.duration /= parts;
+                joints.push(joint);
                 start = end;
                 part += 1.0;
             }

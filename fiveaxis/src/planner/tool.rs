@@ -6,14 +6,18 @@ use super::{NOTABLE, PosePlanner, Slowdown};
 use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
+use crate::joint::JointBlock;
 use crate::lay::{intervals, knots, piece};
-use crate::pole::Spin;
+use crate::pole::{Spin, parts_at_pole};
 use crate::relax::{Stretch, relax};
 use crate::settings::PoseMethod;
 use crate::timing::goes_on;
 use crate::tool::ToolStretch;
 use crate::way::Way;
 use toolglide_kinematics::{PoseLeg, PosePiece};
+
+/// A turn in place is commanded for at least this share of the delay of the chain, which takes the time.
+const LEAST_TURN: f64 = 0.01;
 
 /// Blocks in a row between two rests, with what was asked of each.
 #[derive(Default)]
@@ -31,26 +35,43 @@ impl PosePlanner<'_> {
             let Some(block) = PoseBlock::of(leg, *number, self.settings.turn_rate()) else {
                 continue;
             };
-            let way = match Spin::before(&block, self.machine, &self.at)? {
-                (Some(way), _) => way,
-                (None, None) => Way::along(&block, self.machine, &self.at)?,
-                (None, Some(spin)) => {
-                    self.plan_row(std::mem::take(&mut row))?;
-                    for mut turn in spin.blocks(&block, self.machine)? {
-                        if !self.settings.keeps_axis_limits() {
-                            turn.duration = self.settings.chain().total_delay();
-                        }
-                        let way = Way::along(&turn, self.machine, &self.at)?;
-                        let mut alone = Row::default();
-                        self.take(&mut alone, turn, way)?;
-                        self.plan_row(alone)?;
-                    }
-                    Way::along(&block, self.machine, &self.at)?
-                }
-            };
-            self.take_parts(&mut row, block, way)?;
+            if self.goes_straight() {
+                let way = Way::along(&block, self.machine, &self.at)?;
+                self.take(&mut row, block, way)?;
+                continue;
+            }
+            let (first, second) = parts_at_pole(&block, self.machine)?;
+            for part in [Some(first), second].into_iter().flatten() {
+                let way = self.way(&part, &mut row)?;
+                self.take_parts(&mut row, part, way)?;
+            }
         }
         self.plan_row(row)
+    }
+
+    /// The way along a block from where the axes are. Where one of them must turn at rest before, the row so
+    /// far and that turn are planned.
+    fn way(&mut self, block: &PoseBlock, row: &mut Row) -> Result<Way, FiveAxisError> {
+        let spin = match Spin::before(block, self.machine, &self.at)? {
+            (Some(way), _) => return Ok(way),
+            (None, spin) => spin,
+        };
+        if let Some(spin) = spin {
+            self.plan_row(std::mem::take(row))?;
+            for mut turn in spin.blocks(block, self.machine)? {
+                turn.duration = LEAST_TURN * self.settings.chain().total_delay();
+                let way = Way::along(&turn, self.machine, &self.at)?;
+                let mut alone = Row::default();
+                self.take(&mut alone, turn, way)?;
+                self.plan_row(alone)?;
+            }
+        }
+        Way::along(block, self.machine, &self.at)
+    }
+
+    /// Whether the axes go straight between the poses, whatever the tool does.
+    fn goes_straight(&self) -> bool {
+        matches!(self.settings.method(), PoseMethod::JointSpace { .. })
     }
 
     /// Adds a block to a row: whole, or in parts where one must be much slower than the others.
@@ -60,9 +81,7 @@ impl PosePlanner<'_> {
         block: PoseBlock,
         way: Way,
     ) -> Result<(), FiveAxisError> {
-        let free = self.settings.keeps_axis_limits()
-            && !matches!(self.settings.method(), PoseMethod::JointSpace { .. });
-        let cuts = if free {
+        let cuts = if self.settings.keeps_axis_limits() {
             way.cuts(&self.axes, block.duration, self.settings.chain())
         } else {
             Vec::new()
@@ -86,7 +105,12 @@ impl PosePlanner<'_> {
         self.at = *way.last();
         let mut limit = None;
         if self.settings.keeps_axis_limits() {
-            let (least, by) = way.least_duration(&self.axes, self.settings.chain());
+            let (axes, chain) = (&self.axes, self.settings.chain());
+            let (least, by) = if self.goes_straight() {
+                JointBlock::between(&block, *way.first(), *way.last()).least_duration(axes, chain)
+            } else {
+                way.least_duration(axes, chain)
+            };
             if least > block.duration {
                 block.duration = least;
                 limit = Some(by);

@@ -28,8 +28,11 @@ const TRUNCATION: f64 = 1e-5;
 const TRUNCATION_LENGTH: f64 = 1e-10;
 
 /// Below this, mm and rad, coefficients that do not fall any more are the rounding of positions, which
-/// shorter stretches would only enlarge.
-const ROUNDING: f64 = 1e-11;
+/// shorter stretches would only enlarge: beside a pole that of an orientation is a million times its own.
+const ROUNDING: f64 = 1e-8;
+
+/// Coefficients up to this many times the rounding are rounding.
+const ROUNDED: f64 = 4.0;
 
 /// Coefficients fall when the last two are less than this share of the two before them.
 const FALLING: f64 = 0.2;
@@ -102,14 +105,25 @@ impl<'m> Follower<'m> {
                 values[node] = *position;
             }
         }
-        let series: Vec<_> = self.values.iter().map(coefficients).collect();
+        let mut series: Vec<_> = self.values.iter().map(coefficients).collect();
         let scale = TRUNCATION * half.powi(3) / last_jerk();
-        let resolved = series.iter().zip(&self.axes).all(|(series, axis)| {
+        let mut resolved = true;
+        for (series, axis) in series.iter_mut().zip(&self.axes) {
             let last = series[NODES - 1].abs().max(series[NODES - 2].abs());
             let before = series[NODES - 3].abs().max(series[NODES - 4].abs());
-            last < (scale * axis.limits.jerk()).min(TRUNCATION_LENGTH)
-                || (last < ROUNDING && last > FALLING * before)
-        });
+            if last < (scale * axis.limits.jerk()).min(TRUNCATION_LENGTH) {
+                continue;
+            }
+            if half <= LEAST_HALF && last < ROUNDING && last > FALLING * before {
+                for coefficient in &mut series[4..] {
+                    if coefficient.abs() <= ROUNDED * last.max(before) {
+                        *coefficient = 0.0;
+                    }
+                }
+            } else {
+                resolved = false;
+            }
+        }
         if !resolved && 0.5 * (end - begin) > SHORTEST_HALF {
             self.near = before;
             let least = 0.5 * least;
