@@ -4,11 +4,12 @@
 
 use crate::bend::Bend;
 use crate::chords::{Chords, bulge_of};
+use crate::command::Command;
 use crate::lookahead::LookAhead;
 use crate::merge::{Leg, MERGE_SHARE, Merger, Vertex};
 use crate::pulse::Pulse;
 use crate::settings::{Method, Settings};
-use crate::sweep::{Command, Sweep};
+use crate::sweep::Sweep;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{
     Arc, Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,

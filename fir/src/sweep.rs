@@ -5,13 +5,11 @@
 //! are under way; the closed form of position, velocity and acceleration takes the rounding out
 //! every few knots. Not here: when pulses begin.
 
+use crate::command::{Command, TimedPulse};
 use crate::cubic::CubicChain;
+use crate::taps::{SAME_INSTANT, Taps};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Piece, Sample, Serves, Vector};
-
-/// Instants nearer than this are one, s: far below any period and above the rounding of times of some
-/// minutes.
-const SAME_INSTANT: f64 = 1e-12;
 
 /// Knots after which the state is computed afresh: rounding of so many steps is far below what the
 /// judge can see.
@@ -25,31 +23,6 @@ const LONG_PIECE: f64 = 0.5;
 /// exact, and short, so that times keep their digits.
 const CLOCK_SPAN: f64 = 16.0;
 
-/// What the look-ahead has decided.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Command<const N: usize> {
-    /// A straight pulse, `gap` after the end of the one before.
-    Pulse(TimedPulse<N>),
-    /// The motion comes to rest.
-    Rest,
-    /// A pause at rest, or moves that lead nowhere.
-    Pause { duration: f64, serves: Serves },
-    /// From here on, two other filters; only at rest.
-    Filters { long: f64, short: f64 },
-}
-
-/// A straight pulse with its times.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TimedPulse<const N: usize> {
-    pub(crate) gap: f64,
-    pub(crate) duration: f64,
-    pub(crate) from: Vector<N>,
-    pub(crate) to: Vector<N>,
-    /// That of the whole move: ends of what was cut are rounded.
-    pub(crate) velocity: Vector<N>,
-    pub(crate) serves: Serves,
-}
-
 /// A pulse under way.
 #[derive(Clone, Copy, Debug)]
 struct Active<const N: usize> {
@@ -61,29 +34,12 @@ struct Active<const N: usize> {
     serves: Serves,
 }
 
-/// A change of the commanded velocity.
-#[derive(Clone, Copy, Debug)]
-struct Step<const N: usize> {
-    time: f64,
-    velocity: Vector<N>,
-}
-
-/// A delay at which the commanded velocity enters the jerk.
-#[derive(Clone, Copy, Debug)]
-struct Tap {
-    delay: f64,
-    weight: f64,
-    /// Index of the next step to arrive.
-    next: usize,
-}
-
 /// The exact motion behind a chain, piece by piece.
 #[derive(Clone, Debug)]
 pub(crate) struct Sweep<const N: usize> {
     chain: CubicChain,
     commands: VecDeque<Command<N>>,
-    taps: Vec<Tap>,
-    steps: VecDeque<Step<N>>,
+    taps: Taps<N>,
     active: VecDeque<Active<N>>,
     /// How many of the active pulses have begun.
     begun: usize,
@@ -99,10 +55,9 @@ impl<const N: usize> Sweep<N> {
     /// At rest at `start`, with room for `capacity` commands.
     pub(crate) fn new(start: Vector<N>, chain: CubicChain, capacity: usize) -> Self {
         let mut sweep = Self {
-            taps: Vec::with_capacity(4 * chain.comb().len()),
+            taps: Taps::new(&chain, 2 * capacity),
             chain,
             commands: VecDeque::with_capacity(capacity),
-            steps: VecDeque::with_capacity(2 * capacity),
             active: VecDeque::with_capacity(capacity),
             begun: 0,
             state: Sample::at_rest(start),
@@ -123,7 +78,7 @@ impl<const N: usize> Sweep<N> {
     /// The next piece; `None` when more commands are needed.
     pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
         loop {
-            let knot = self.next_knot();
+            let knot = self.taps.next_knot();
             if knot <= self.horizon() {
                 if let Some(piece) = self.advance(knot) {
                     return Some(piece);
@@ -143,10 +98,7 @@ impl<const N: usize> Sweep<N> {
                         continue;
                     }
                     self.resting = true;
-                    self.steps.push_back(Step {
-                        time: self.commanded,
-                        velocity: Vector::zeros(),
-                    });
+                    self.taps.push(self.commanded, Vector::zeros());
                 }
                 Command::Pause { duration, serves } => {
                     let at = self.state.position;
@@ -172,19 +124,13 @@ impl<const N: usize> Sweep<N> {
 
     fn begin(&mut self, pulse: &TimedPulse<N>) {
         if pulse.gap > SAME_INSTANT {
-            self.steps.push_back(Step {
-                time: self.commanded,
-                velocity: Vector::zeros(),
-            });
+            self.taps.push(self.commanded, Vector::zeros());
             self.commanded += pulse.gap;
         }
         let velocity = pulse.velocity;
         let begin = self.commanded;
         self.commanded += pulse.duration;
-        self.steps.push_back(Step {
-            time: begin,
-            velocity,
-        });
+        self.taps.push(begin, velocity);
         self.active.push_back(Active {
             begin,
             end: self.commanded,
@@ -204,33 +150,7 @@ impl<const N: usize> Sweep<N> {
         self.since_anchor = 0;
         self.begun = 0;
         self.active.clear();
-        self.steps.clear();
-        // What was commanded before the first step.
-        self.steps.push_back(Step {
-            time: f64::NEG_INFINITY,
-            velocity: Vector::zeros(),
-        });
-        let (long, short) = (self.chain.long(), self.chain.short());
-        let product = long * short;
-        self.taps.clear();
-        for tooth in self.chain.comb() {
-            for (delay, sign) in [(0.0, 1.0), (short, -1.0), (long, -1.0), (long + short, 1.0)] {
-                self.taps.push(Tap {
-                    delay: tooth.delay + delay,
-                    weight: sign * tooth.weight / product,
-                    next: 1,
-                });
-            }
-        }
-    }
-
-    /// When the jerk changes next, as far as is known.
-    fn next_knot(&self) -> f64 {
-        let arrivals = self.taps.iter().filter_map(|tap| {
-            let step = self.steps.get(tap.next)?;
-            Some(step.time + tap.delay)
-        });
-        arrivals.fold(f64::INFINITY, f64::min)
+        self.taps.restart(&self.chain);
     }
 
     /// Goes on to a knot; gives the piece up to it unless it has no length.
@@ -247,8 +167,10 @@ impl<const N: usize> Sweep<N> {
         } else {
             None
         };
-        self.arrive(knot);
-        let next = self.next_knot();
+        let (jerk, early) = self.taps.arrive(knot);
+        self.state.acceleration -= early;
+        self.state.jerk = jerk;
+        let next = self.taps.next_knot();
         if self.resting && next.is_infinite() {
             self.land();
         } else if self.since_anchor >= KNOTS_TO_ANCHOR
@@ -363,41 +285,13 @@ impl<const N: usize> Sweep<N> {
         }
     }
 
-    /// Lets the steps that are due arrive at their taps.
-    fn arrive(&mut self, knot: f64) {
-        let mut jerk = Vector::zeros();
-        let mut oldest = usize::MAX;
-        for tap in &mut self.taps {
-            while let Some(step) = self.steps.get(tap.next)
-                && step.time + tap.delay <= knot + SAME_INSTANT
-            {
-                // Instants that are one are not quite the same: what the jerk does too early.
-                let early = step.time + tap.delay - knot;
-                let change = step.velocity - self.steps[tap.next - 1].velocity;
-                self.state.acceleration -= change * (tap.weight * early);
-                tap.next += 1;
-            }
-            oldest = oldest.min(tap.next - 1);
-            jerk += self.steps[tap.next - 1].velocity * tap.weight;
-        }
-        self.state.jerk = jerk;
-        if oldest > 0 {
-            self.steps.drain(..oldest);
-            for tap in &mut self.taps {
-                tap.next -= oldest;
-            }
-        }
-    }
-
     fn set_back_clock(&mut self) {
         if self.time < CLOCK_SPAN {
             return;
         }
         self.time -= CLOCK_SPAN;
         self.commanded -= CLOCK_SPAN;
-        for step in &mut self.steps {
-            step.time -= CLOCK_SPAN;
-        }
+        self.taps.set_back(CLOCK_SPAN);
         for pulse in &mut self.active {
             pulse.begin -= CLOCK_SPAN;
             pulse.end -= CLOCK_SPAN;

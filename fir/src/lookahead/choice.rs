@@ -6,9 +6,9 @@
 
 use super::LookAhead;
 use super::ramp::STEPS;
+use crate::command::Command;
 use crate::cubic::CubicChain;
 use crate::settings::{designed_for, largest_change};
-use crate::sweep::Command;
 use toolglide_kinematics::largest_multiple;
 
 /// Feedrates that chains are designed for: that of the program, and each half of the one before.

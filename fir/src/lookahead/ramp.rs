@@ -8,7 +8,6 @@
 use super::LookAhead;
 use crate::bound::TOUCH;
 use crate::pulse::Pulse;
-use toolglide_kinematics::Vector;
 
 /// Most steps from rest to the largest feedrate: bounds memory.
 pub(super) const STEPS: f64 = 16.0;
@@ -16,12 +15,9 @@ pub(super) const STEPS: f64 = 16.0;
 /// Passes over the window; one each way is enough on a straight line.
 const ROUNDS: u32 = 12;
 
-/// A feedrate is lowered when it is too high by more than this, relative: above the rounding, and with
-/// [`SLACK`] below what is left for rounding in the change of velocity.
+/// A feedrate is lowered when it is too high by more than this, relative: above the rounding, and far
+/// below what is left for rounding in the change of velocity.
 const TOO_HIGH: f64 = 1e-12;
-
-/// What a change of velocity may exceed its bound by, relative.
-const SLACK: f64 = 1e-10;
 
 /// A pulse is cut in two where this share of a step is left for the rest.
 const WORTH_A_CUT: f64 = 0.5;
@@ -252,64 +248,5 @@ impl<const N: usize> LookAhead<N> {
             }
         }
         self.pulses.truncate(kept);
-    }
-
-    /// Whether no axis changes its velocity by too much within the longest filter, as all is timed.
-    pub(super) fn in_step(&self) -> bool {
-        let long = self.chain.long();
-        let much = |change: Vector<N>| {
-            (0..N).any(|axis| change[axis].abs() > self.change[axis] * (1.0 + SLACK))
-        };
-        let velocity = |index: usize| self.pulses[index].direction * self.pulses[index].feed;
-        let count = self.pulses.len();
-        let end = |index: usize| self.schedule.end(index);
-        // The rest at the end of all that is known.
-        if count > 0 {
-            let last = end(count - 1);
-            for index in (0..count).rev() {
-                if end(index) + long <= last + TOUCH {
-                    break;
-                }
-                if much(velocity(index)) {
-                    return false;
-                }
-            }
-        }
-        for index in self.fixed..count {
-            let begin = self.schedule.begin(index);
-            let here = velocity(index);
-            for earlier in (0..=index).rev() {
-                let starts = earlier == 0 && !self.underway;
-                if starts && self.schedule.begin(0) + long > begin + TOUCH && much(here) {
-                    return false;
-                }
-                if earlier == 0 {
-                    break;
-                }
-                let (stops, goes_on) = (end(earlier - 1), self.schedule.begin(earlier));
-                if goes_on > stops {
-                    if goes_on + long > begin + TOUCH && much(here) {
-                        return false;
-                    }
-                    if earlier == index {
-                        for before in (0..earlier).rev() {
-                            if end(before) + long <= stops + TOUCH {
-                                break;
-                            }
-                            if much(velocity(before)) {
-                                return false;
-                            }
-                        }
-                    }
-                }
-                if stops + long <= begin + TOUCH {
-                    break;
-                }
-                if much(here - velocity(earlier - 1)) {
-                    return false;
-                }
-            }
-        }
-        true
     }
 }

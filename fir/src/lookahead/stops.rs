@@ -1,0 +1,85 @@
+//! Stops at every corner where that takes less time than going on.
+//!
+//! Source: ours. Not here: how what goes on is planned.
+
+use super::LookAhead;
+use crate::pulse::Pulse;
+
+impl<const N: usize> LookAhead<N> {
+    /// Stops at every corner where that takes less time; longer dwells are always safe.
+    pub(super) fn stop_where_faster(&mut self) {
+        let total = self.chain.total();
+        let first = self.fixed.saturating_sub(1);
+        let end = if self.fixed > 0 {
+            self.schedule.end(first)
+        } else {
+            0.0
+        };
+        let Some(last) = self.pulses.len().checked_sub(1) else {
+            return;
+        };
+        let planned = self.schedule.end(last) - end;
+        let is_corner = |pulse: &Pulse<N>| !pulse.smooth && pulse.turn > 0.0;
+        let moving = self.least_time();
+        let stops = self.pulses[first..last]
+            .iter()
+            .filter(|pulse| is_corner(pulse));
+        let mut dwelling = 0.0;
+        stops.for_each(|_| dwelling += total);
+        if planned <= moving + dwelling {
+            return;
+        }
+        self.kept.clear();
+        self.kept.extend_from_slice(&self.pulses);
+        // Behind the first stop nothing is left of the plan.
+        let stop = if self.fixed == 0 {
+            0
+        } else {
+            (first..last)
+                .find(|&index| is_corner(&self.pulses[index]))
+                .map_or(last, |corner| corner + 1)
+        };
+        self.join(stop.max(self.fixed));
+        if let Some(before) = stop.checked_sub(1)
+            && stop <= last
+        {
+            let corner = &mut self.pulses[before];
+            corner.pass = false;
+            corner.overlap = 0.0;
+        }
+        for pulse in &mut self.pulses[stop.max(self.fixed)..] {
+            pulse.feed = pulse.limit;
+            let stops = is_corner(pulse);
+            pulse.pass = !stops;
+            pulse.overlap = if stops { 0.0 } else { total };
+        }
+        let capped = std::mem::replace(&mut self.capped, false);
+        self.ramp();
+        self.time();
+        let last = self.pulses.len() - 1;
+        if self.schedule.end(last) - end > planned || !self.in_step() {
+            std::mem::swap(&mut self.pulses, &mut self.kept);
+            self.capped = capped;
+            self.time();
+        }
+    }
+
+    /// Less time than what waits takes with a full stop at every corner, but for the dwells.
+    fn least_time(&self) -> f64 {
+        let (mut time, mut length) = (0.0, 0.0);
+        for pulse in &self.pulses[self.fixed..] {
+            time += pulse.length / pulse.limit;
+            length += pulse.length;
+            if pulse.part {
+                continue;
+            }
+            let acceleration = pulse.step / self.chain.long();
+            if pulse.arc.is_none() && length * acceleration > pulse.limit * pulse.limit {
+                let missing = (pulse.limit - pulse.step).max(0.0);
+                time += missing * missing / (acceleration * pulse.limit);
+            }
+            length = 0.0;
+        }
+        time
+    }
+}

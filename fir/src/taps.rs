@@ -1,0 +1,113 @@
+//! The jerk behind a chain: commanded velocities at a few delays, each with a weight.
+//!
+//! Source: equations 4.1 to 4.7; the third derivative of two moving averages is four impulses, and a comb
+//! repeats them. Not here: what the jerk is integrated to.
+
+use crate::cubic::CubicChain;
+use std::collections::VecDeque;
+use toolglide_kinematics::Vector;
+
+/// Instants nearer than this are one, s: far below any period and above the rounding of times of some
+/// minutes.
+pub(crate) const SAME_INSTANT: f64 = 1e-12;
+
+/// A change of the commanded velocity.
+#[derive(Clone, Copy, Debug)]
+struct Step<const N: usize> {
+    time: f64,
+    velocity: Vector<N>,
+}
+
+/// A delay at which the commanded velocity enters the jerk.
+#[derive(Clone, Copy, Debug)]
+struct Tap {
+    delay: f64,
+    weight: f64,
+    /// Index of the next step to arrive.
+    next: usize,
+}
+
+/// All delays of a chain, and the steps that have not passed all of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Taps<const N: usize> {
+    taps: Vec<Tap>,
+    steps: VecDeque<Step<N>>,
+}
+
+impl<const N: usize> Taps<N> {
+    /// Room for a chain and for some steps.
+    pub(crate) fn new(chain: &CubicChain, capacity: usize) -> Self {
+        Self {
+            taps: Vec::with_capacity(4 * chain.comb().len()),
+            steps: VecDeque::with_capacity(capacity),
+        }
+    }
+
+    /// Begins afresh at rest.
+    pub(crate) fn restart(&mut self, chain: &CubicChain) {
+        self.steps.clear();
+        // What was commanded before the first step.
+        self.push(f64::NEG_INFINITY, Vector::zeros());
+        let (long, short) = (chain.long(), chain.short());
+        let product = long * short;
+        self.taps.clear();
+        for tooth in chain.comb() {
+            for (delay, sign) in [(0.0, 1.0), (short, -1.0), (long, -1.0), (long + short, 1.0)] {
+                self.taps.push(Tap {
+                    delay: tooth.delay + delay,
+                    weight: sign * tooth.weight / product,
+                    next: 1,
+                });
+            }
+        }
+    }
+
+    /// The commanded velocity changes.
+    pub(crate) fn push(&mut self, time: f64, velocity: Vector<N>) {
+        self.steps.push_back(Step { time, velocity });
+    }
+
+    /// When the jerk changes next, as far as is known.
+    pub(crate) fn next_knot(&self) -> f64 {
+        let arrivals = self.taps.iter().filter_map(|tap| {
+            let step = self.steps.get(tap.next)?;
+            Some(step.time + tap.delay)
+        });
+        arrivals.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Lets the steps that are due arrive at their taps; gives the jerk, and the acceleration that comes
+    /// too early.
+    pub(crate) fn arrive(&mut self, knot: f64) -> (Vector<N>, Vector<N>) {
+        let mut jerk = Vector::zeros();
+        let mut ahead = Vector::zeros();
+        let mut oldest = usize::MAX;
+        for tap in &mut self.taps {
+            while let Some(step) = self.steps.get(tap.next)
+                && step.time + tap.delay <= knot + SAME_INSTANT
+            {
+                // Instants that are one are not quite the same: what the jerk does too early.
+                let early = step.time + tap.delay - knot;
+                let change = step.velocity - self.steps[tap.next - 1].velocity;
+                ahead += change * (tap.weight * early);
+                tap.next += 1;
+            }
+            oldest = oldest.min(tap.next - 1);
+            jerk += self.steps[tap.next - 1].velocity * tap.weight;
+        }
+        if oldest > 0 {
+            self.steps.drain(..oldest);
+            for tap in &mut self.taps {
+                tap.next -= oldest;
+            }
+        }
+        (jerk, ahead)
+    }
+
+    /// Sets the clock back.
+    pub(crate) fn set_back(&mut self, span: f64) {
+        for step in &mut self.steps {
+            step.time -= span;
+        }
+    }
+}
