@@ -49,12 +49,9 @@ impl Steps {
     /// Filtered progress as a polynomial from `time` on, up to the next knot; `inside` is an instant
     /// before it.
     pub(crate) fn cubic(&self, chain: &FilterChain, time: f64, inside: f64) -> CubicInTime {
-        [
-            self.sum(|at| chain.position(time - at)),
-            self.sum(|at| chain.velocity(time - at)),
-            self.sum(|at| chain.acceleration(time - at)) / 2.0,
-            self.sum(|at| chain.jerk(inside - at)) / 6.0,
-        ]
+        let [position, velocity, acceleration, _] = self.state(chain, time);
+        let jerk = self.state(chain, inside)[3];
+        [position, velocity, acceleration / 2.0, jerk / 6.0]
     }
 
     /// Filtered progress and its first three derivatives at an instant.
@@ -66,12 +63,5 @@ impl Steps {
             }
         }
         state
-    }
-
-    fn sum(&self, response: impl Fn(f64) -> f64) -> f64 {
-        self.list[..self.count]
-            .iter()
-            .map(|&(time, change)| change * response(time))
-            .sum()
     }
 }

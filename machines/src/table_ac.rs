@@ -1,6 +1,7 @@
 //! A vertical machine whose table tilts about X and turns the workpiece: axes X, Y, Z, A and C.
 //!
-//! Source: section 5.2, p = a0 + Rx(A)·(d + Rz(C)·(P + w)) and Rx(A)·Rz(C)·O = e_z. Not here: the kinematics of tilting tables, see `tilting_table`.
+//! Source: section 5.2, p = a0 + Rx(A)·(d + Rz(C)·(P + w)) and Rx(A)·Rz(C)·O = e_z. Not here:
+//! the kinematics of tilting tables, see `tilting_table`.
 
 use crate::config::MachineConfig;
 use crate::error::MachineError;
@@ -13,21 +14,30 @@ use toolglide_kinematics::{MachineKinematics, Vector};
 const GEOMETRY: [Distance; 10] = geometry!("a", "A");
 
 /// The table tilts about X; O = (sA·sC, sA·cC, cA).
-const TILT: Tilt = Tilt {
-    about: about_x,
-    swivel: |orientation| Vector::<3>::new(orientation.y, orientation.x, orientation.z),
-};
+#[derive(Debug)]
+struct AboutX;
+
+impl Tilt for AboutX {
+    const LETTER: char = 'A';
+
+    fn about(angle: (f64, f64), vector: Vector<3>) -> Vector<3> {
+        about_x(angle, vector)
+    }
+
+    fn swivel(orientation: Vector<3>) -> Vector<3> {
+        Vector::<3>::new(orientation.y, orientation.x, orientation.z)
+    }
+}
 
 fn preset() -> MachineConfig {
-    tilting_table::preset(
+    tilting_table::preset::<AboutX>(
         "table-ac",
-        'A',
         std::array::from_fn(|distance| GEOMETRY[distance].name),
     )
 }
 
 fn build(config: &MachineConfig) -> Result<Box<dyn MachineKinematics>, MachineError> {
-    tilting_table::build(config, &GEOMETRY, 'A', TILT)
+    tilting_table::build::<AboutX>(config, &GEOMETRY)
 }
 
 /// A table that tilts about X and carries a rotary table.

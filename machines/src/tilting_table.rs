@@ -9,6 +9,7 @@ use crate::error::MachineError;
 use crate::geometry::Distance;
 use crate::structure::{Assembly, Branches, Structure};
 use crate::swivel::{Swivel, about_z, axes, back, pole};
+use std::marker::PhantomData;
 use toolglide_kinematics::{KinematicsError, MachineKinematics, ToolPose, Vector};
 
 /// The distances of a tilting table whose tilting axis has this letter, small and capital.
@@ -66,47 +67,51 @@ macro_rules! geometry {
 }
 pub(crate) use geometry;
 
-/// How a table tilts: what turns a vector about its axis by a sine and cosine, and the swivel direction of
-/// a tool orientation, which is also the orientation of a swivel direction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tilt {
-    pub(crate) about: fn((f64, f64), Vector<3>) -> Vector<3>,
-    pub(crate) swivel: fn(Vector<3>) -> Vector<3>,
+/// How a table tilts.
+pub(crate) trait Tilt: std::fmt::Debug + Send + Sync + 'static {
+    /// The letter of the tilting axis.
+    const LETTER: char;
+
+    /// A vector turned about the tilting axis by an angle of this sine and cosine.
+    fn about(angle: (f64, f64), vector: Vector<3>) -> Vector<3>;
+
+    /// The swivel direction of a tool orientation, and the orientation of a swivel direction.
+    fn swivel(orientation: Vector<3>) -> Vector<3>;
 }
 
 /// A tilting rotary table.
-#[derive(Clone, Debug)]
-struct TiltingTable {
-    tilt: Tilt,
+#[derive(Debug)]
+struct TiltingTable<T> {
     /// A point of the tilting axis, in machine coordinates.
     tilt_axis: Vector<3>,
     /// From it to the center of the table, where it does not tilt.
     center: Vector<3>,
     tool_length: f64,
+    tilt: PhantomData<T>,
 }
 
-impl TiltingTable {
+impl<T: Tilt> TiltingTable<T> {
     /// Where a point on the table, from its center, is in machine coordinates.
     fn on_machine(&self, tilt: (f64, f64), spin: (f64, f64), point: Vector<3>) -> Vector<3> {
-        self.tilt_axis + (self.tilt.about)(tilt, self.center + about_z(spin, point))
+        self.tilt_axis + T::about(tilt, self.center + about_z(spin, point))
     }
 }
 
-impl Structure<5> for TiltingTable {
+impl<T: Tilt> Structure<5> for TiltingTable<T> {
     fn tool(&self, joints: &[f64; 5]) -> Result<(Vector<3>, Vector<3>), KinematicsError> {
         let [x, y, z, tilt, c] = *joints;
         let swivel = Swivel::at(tilt, c);
         let point = Vector::<3>::new(x, y, z - self.tool_length) - self.tilt_axis;
         let tip = about_z(
             back(swivel.spun),
-            (self.tilt.about)(back(swivel.tilted), point) - self.center,
+            T::about(back(swivel.tilted), point) - self.center,
         );
-        Ok((tip, (self.tilt.swivel)(swivel.direction())))
+        Ok((tip, T::swivel(swivel.direction())))
     }
 
     fn branches(&self, pose: &ToolPose, near: &[f64; 5]) -> Result<Branches<5>, KinematicsError> {
         let mut branches = Branches::none();
-        for swivel in Swivel::towards(&(self.tilt.swivel)(pose.orientation()), near[4]) {
+        for swivel in Swivel::towards(&T::swivel(pose.orientation()), near[4]) {
             let point = self.on_machine(swivel.tilted, swivel.spun, pose.tip());
             let z = point.z + self.tool_length;
             branches.push([point.x, point.y, z, swivel.tilt, swivel.spin]);
@@ -120,7 +125,7 @@ impl Structure<5> for TiltingTable {
 }
 
 /// A machine file to begin with. `distances` are those that must be given.
-pub(crate) fn preset(name: &str, tilt: char, distances: [&'static str; 6]) -> MachineConfig {
+pub(crate) fn preset<T: Tilt>(name: &str, distances: [&'static str; 6]) -> MachineConfig {
     let mut config = MachineConfig::new(
         name,
         name,
@@ -128,7 +133,7 @@ pub(crate) fn preset(name: &str, tilt: char, distances: [&'static str; 6]) -> Ma
             AxisConfig::new('X', 500.0, 2_500.0, 200_000.0).with_travel(-400.0, 400.0),
             AxisConfig::new('Y', 500.0, 2_500.0, 200_000.0).with_travel(-400.0, 400.0),
             AxisConfig::new('Z', 400.0, 2_500.0, 200_000.0).with_travel(-200.0, 500.0),
-            AxisConfig::new(tilt, 180.0, 1_500.0, 60_000.0).with_travel(-120.0, 120.0),
+            AxisConfig::new(T::LETTER, 180.0, 1_500.0, 60_000.0).with_travel(-120.0, 120.0),
             AxisConfig::new('C', 360.0, 3_000.0, 120_000.0),
         ],
     );
@@ -141,18 +146,16 @@ pub(crate) fn preset(name: &str, tilt: char, distances: [&'static str; 6]) -> Ma
 }
 
 /// The machine that a machine file describes.
-pub(crate) fn build(
+pub(crate) fn build<T: Tilt>(
     config: &MachineConfig,
     geometry: &[Distance; 10],
-    letter: char,
-    tilt: Tilt,
 ) -> Result<Box<dyn MachineKinematics>, MachineError> {
     let [tx, ty, tz, cx, cy, cz, tool_length, wx, wy, wz] = config.distances(geometry)?;
-    let structure = TiltingTable {
-        tilt,
+    let structure = TiltingTable::<T> {
         tilt_axis: Vector::<3>::new(tx, ty, tz),
         center: Vector::<3>::new(cx, cy, cz),
         tool_length,
+        tilt: PhantomData,
     };
-    Assembly::build(structure, [wx, wy, wz], axes(letter), config)
+    Assembly::build(structure, [wx, wy, wz], axes(T::LETTER), config)
 }
