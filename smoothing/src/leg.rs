@@ -20,8 +20,8 @@ pub(crate) struct Leg<const N: usize> {
     /// How far those moves may lie from the leg.
     pub(crate) deviation: f64,
     pub(crate) serves: Serves,
-    /// Numbers of the first vertex that was merged into it and of the next one that was not, counted
-    /// by the merger from its beginning.
+    /// Numbers of the first of the vertices that corners are made of instead of it, and of the first
+    /// after them. All those of an arc belong to its first leg.
     pub(crate) vertices: [u64; 2],
     /// Whether the motion rests at its end.
     pub(crate) stop: bool,

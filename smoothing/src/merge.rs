@@ -39,6 +39,8 @@ pub(crate) struct Vertex<const N: usize> {
     pub(crate) feedrate: f64,
     pub(crate) tolerance: Tolerance,
     pub(crate) serves: Serves,
+    /// Number of the next one among the vertices that corners are made of, see [`Leg::vertices`].
+    pub(crate) next: u64,
 }
 
 /// Merges vertices into legs.
@@ -53,9 +55,8 @@ pub(crate) struct Merger<const N: usize> {
     /// Largest feedrate of the run.
     fastest: f64,
     carried: Option<Carried<N>>,
-    /// Number of the first vertex that no leg has served, and of the next to come.
+    /// Number of the first vertex that no leg has served.
     first: u64,
-    taken: u64,
 }
 
 /// Moves that led nowhere and wait for a leg to serve them.
@@ -68,6 +69,8 @@ struct Carried<const N: usize> {
     tolerance: Tolerance,
     /// Where they ended: the anchor, but for rounding.
     end: Vector<N>,
+    /// Number of the next vertex.
+    next: u64,
 }
 
 impl<const N: usize> Merger<N> {
@@ -82,7 +85,6 @@ impl<const N: usize> Merger<N> {
             fastest: 0.0,
             carried: None,
             first: 0,
-            taken: 0,
         }
     }
 
@@ -96,7 +98,6 @@ impl<const N: usize> Merger<N> {
         self.fastest = other.fastest;
         self.carried = other.carried;
         self.first = other.first;
-        self.taken = other.taken;
     }
 
     /// Begins again at rest at `start`.
@@ -112,7 +113,6 @@ impl<const N: usize> Merger<N> {
     pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Leg<N>> {
         if self.run.is_empty() && (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
             self.carry(&vertex, vertex.serves, vertex.bulge);
-            self.taken += 1;
             return None;
         }
         let mut leg = None;
@@ -122,7 +122,6 @@ impl<const N: usize> Merger<N> {
                 leg = self.flush();
                 if (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
                     self.carry(&vertex, vertex.serves, vertex.bulge);
-                    self.taken += 1;
                     return leg;
                 }
                 self.deviation = vertex.bulge;
@@ -130,7 +129,6 @@ impl<const N: usize> Merger<N> {
         }
         self.fastest = self.fastest.max(vertex.feedrate);
         self.run.push(vertex);
-        self.taken += 1;
         leg
     }
 
@@ -174,19 +172,19 @@ impl<const N: usize> Merger<N> {
             tolerance,
             deviation,
             serves,
-            vertices: [self.first, self.taken],
+            vertices: [self.first, last.next],
             stop: false,
             dwell: None,
         };
         self.anchor = last.point;
-        self.first = self.taken;
+        self.first = last.next;
         Some(leg)
     }
 
     /// Moves that led nowhere and that no leg has served.
     pub(crate) fn take_carried(&mut self) -> Option<Dwell<N>> {
         let carried = self.carried.take()?;
-        self.first = self.taken;
+        self.first = carried.next;
         Some(Dwell {
             duration: 0.0,
             serves: carried.serves,
@@ -223,6 +221,7 @@ impl<const N: usize> Merger<N> {
             deviation,
             tolerance: last.tolerance,
             end: last.point,
+            next: last.next,
         };
         if let Some(before) = self.carried {
             carried.serves.first = before.serves.first;

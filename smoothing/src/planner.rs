@@ -10,8 +10,7 @@ use crate::merge::Vertex;
 use crate::method::{Method, Settings};
 use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
-    MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Tolerance, Toolpath, Vector,
-    check_contact,
+    Arc, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector, check_contact,
 };
 
 /// Plans kinematic corner smoothing while the path is being read.
@@ -77,10 +76,9 @@ impl<const N: usize> KinematicSmoothing<N> {
             None => {
                 let alone = self.route.takes_alone(chords);
                 self.arc = None;
+                self.route.end_arc();
                 if alone || self.stops || step.stops() {
                     self.route.rest();
-                } else {
-                    self.route.part(step.tolerance());
                 }
                 if self.finished {
                     self.route.close();
@@ -91,16 +89,26 @@ impl<const N: usize> KinematicSmoothing<N> {
     }
 
     fn take_point(&mut self, step: &Move<N>, index: u32, point: Vector<N>, bulge: f64) {
-        self.route.push(Vertex {
-            point,
-            bulge,
-            feedrate: step.feedrate().speed(),
-            tolerance: step.tolerance(),
-            serves: Serves {
-                first: index,
-                last: index,
-            },
-        });
+        self.route.push(vertex_of(step, index, point, bulge));
+    }
+}
+
+fn vertex_of<const N: usize>(
+    step: &Move<N>,
+    index: u32,
+    point: Vector<N>,
+    bulge: f64,
+) -> Vertex<N> {
+    Vertex {
+        point,
+        bulge,
+        feedrate: step.feedrate().speed(),
+        tolerance: step.tolerance(),
+        serves: Serves {
+            first: index,
+            last: index,
+        },
+        next: 0,
     }
 }
 
@@ -127,11 +135,24 @@ impl<const N: usize> Route<N> {
         }
     }
 
-    /// An arc begins or has ended.
-    fn part(&mut self, tolerance: Tolerance) {
-        match self {
-            Self::Corners(_) => {}
-            Self::Stretches(stretches) => stretches.part(tolerance),
+    /// An arc begins, and may be taken with what is beside it.
+    fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, index: u32) {
+        if let Self::Stretches(stretches) = self {
+            let mut chords =
+                Chords::new(*arc, crate::merge::MERGE_SHARE * step.tolerance().length());
+            let bulge = chords.bulge();
+            let points = std::iter::from_fn(|| chords.next());
+            stretches.begin_arc(
+                step.tolerance(),
+                points.map(|point| vertex_of(step, index, point, bulge)),
+            );
+        }
+    }
+
+    /// The arc has ended.
+    fn end_arc(&mut self) {
+        if let Self::Stretches(stretches) = self {
+            stretches.end_arc();
         }
     }
 
@@ -188,7 +209,7 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
                 if self.route.takes_alone(&chords) {
                     self.route.rest();
                 } else {
-                    self.route.part(next.tolerance());
+                    self.route.begin_arc(arc, next, index);
                 }
                 self.arc = Some((chords, *next, index));
             }

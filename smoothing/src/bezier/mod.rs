@@ -82,6 +82,7 @@ impl<const N: usize> BezierSmoothing<N> {
             feedrate: step.feedrate().speed(),
             tolerance: step.tolerance(),
             serves: serving(index),
+            next: 0,
         });
     }
 }

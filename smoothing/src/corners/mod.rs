@@ -218,17 +218,19 @@ impl<const N: usize> Corners<N> {
     }
 
     /// Time from the beginning to rest after more vertices, of which no motion is made.
-    pub(crate) fn time_to_rest<'a>(
-        &mut self,
-        vertices: impl IntoIterator<Item = &'a Vertex<N>>,
-    ) -> f64 {
+    pub(crate) fn time_to_rest(&mut self, vertices: impl IntoIterator<Item = Vertex<N>>) -> f64 {
         for vertex in vertices {
-            self.push(*vertex);
+            self.push(vertex);
             self.lattice.forget();
             self.legs.drain(..self.offered);
             self.offered = 0;
         }
         self.close();
+        self.duration()
+    }
+
+    /// After it has been closed: the time from the beginning to the end.
+    pub(crate) fn duration(&self) -> f64 {
         self.lattice.duration()
     }
 

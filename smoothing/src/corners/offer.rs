@@ -13,7 +13,7 @@ use crate::turn::TurnShape;
 /// reaches over the whole of the shorter move beside it.
 pub(super) fn overlapping_of(method: Method) -> &'static [f64] {
     match method {
-        Method::Kcs | Method::ExactStop => &[1.3],
+        Method::Kcs | Method::ExactStop => &[1.3, 1.1, 0.9],
         Method::KcsGlobal => &[1.2, 1.1, 1.0, 0.9, 0.8, 0.7, 0.6],
         _ => &[],
     }

@@ -5,7 +5,10 @@
 //! rest. Not here: the plans.
 
 use super::Stretches;
+use super::travel::Entry;
+use crate::corners::Corners;
 use crate::leg::Leg;
+use crate::merge::Vertex;
 
 /// Fewest legs of a stretch worth trying with superposed corners.
 const FEWEST_LEGS: usize = 4;
@@ -14,16 +17,25 @@ const FEWEST_LEGS: usize = 4;
 const WORTH_TRYING: f64 = 0.97;
 
 /// How a stretch is travelled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Choice {
     /// Corner by corner, without a rest before it.
-    Corners,
+    Corners(Material),
     /// Corner by corner, after a rest.
     Afresh,
-    /// With superposed corners.
-    Superposed,
+    /// With superposed corners, after a rest or entered at speed.
+    Superposed(Option<Entry>),
     /// Each move by itself, from rest to rest.
     Apart,
+}
+
+/// What corners are made of. Merging takes the path as it comes, and which of both merges better is chance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Material {
+    /// The vertices as programmed, with few chords of arcs.
+    Vertices,
+    /// The legs of the stretch, which have been cleaned.
+    Legs,
 }
 
 /// What a stretch would take without corners.
@@ -62,20 +74,28 @@ impl<const N: usize> Stretches<N> {
         // Where corners merge only lines, stopping at each is among their ways.
         let certain = !self.watched && !self.has_arc(legs);
         if certain && legs.len() < FEWEST_LEGS {
-            return Choice::Corners;
+            return Choice::Corners(Material::Vertices);
         }
         let (choice, least) = self.choose(legs);
-        if !self.corners.has_begun() || (certain && choice == Choice::Corners) {
+        if !self.corners.has_begun() {
             return choice;
+        }
+        let (going_on, material) = self.going_on(legs);
+        if certain && matches!(choice, Choice::Corners(_)) {
+            return Choice::Corners(material);
         }
         self.trial.follow(&self.corners);
         let resting = self.trial.time_to_rest([]);
-        self.trial.follow(&self.corners);
-        let going_on = self.trial.time_to_rest(self.vertices.of(legs));
-        if going_on <= resting + least {
-            Choice::Corners
-        } else if choice == Choice::Corners {
-            Choice::Afresh
+        let (choice, apart) = match choice {
+            Choice::Corners(_) => (Choice::Afresh, resting + least),
+            Choice::Superposed(_) => match self.plan_entering(legs) {
+                Some((entry, duration)) => (Choice::Superposed(Some(entry)), duration),
+                None => (choice, resting + least),
+            },
+            _ => (choice, resting + least),
+        };
+        if going_on <= apart {
+            Choice::Corners(material)
         } else {
             choice
         }
@@ -86,14 +106,14 @@ impl<const N: usize> Stretches<N> {
     pub(super) fn choose(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
         let (mut choice, mut least) = self.without_superposing(legs);
         if let Some(duration) = self.superpose(legs, least) {
-            (choice, least) = (Choice::Superposed, duration);
+            (choice, least) = (Choice::Superposed(None), duration);
         }
         (choice, least)
     }
 
     /// The same without superposed corners for the whole of it.
     pub(super) fn without_superposing(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
-        let by_corners = self.by_corners(legs);
+        let (by_corners, material) = self.by_corners(legs);
         // Stops are among the choices at every corner, but not inside an arc, which begins and ends
         // afresh where the motion stops beside it.
         let several = legs.windows(2).any(|pair| pair[0].ends_before(&pair[1]));
@@ -106,12 +126,12 @@ impl<const N: usize> Stretches<N> {
                 return (Choice::Apart, apart);
             }
         }
-        (Choice::Corners, by_corners)
+        (Choice::Corners(material), by_corners)
     }
 
     /// Duration of a move, or of lines that are merged into one leg, from rest to rest.
     fn alone(&mut self, legs: &[Leg<N>]) -> f64 {
-        let by_corners = self.by_corners(legs);
+        let (by_corners, _) = self.by_corners(legs);
         self.superpose(legs, by_corners).unwrap_or(by_corners)
     }
 
@@ -133,12 +153,65 @@ impl<const N: usize> Stretches<N> {
         self.superposer.plan(legs, ideal.at_feedrate, most)
     }
 
-    /// Duration of a stretch planned corner by corner from rest to rest.
-    fn by_corners(&mut self, legs: &[Leg<N>]) -> f64 {
-        let Some(first) = legs.first() else {
-            return 0.0;
-        };
-        self.trial.restart(first.start);
-        self.trial.time_to_rest(self.vertices.of(legs))
+    /// Duration of a stretch planned corner by corner from rest to rest, and of what.
+    fn by_corners(&mut self, legs: &[Leg<N>]) -> (f64, Material) {
+        let start = legs.first().map_or(self.end, |first| first.start);
+        self.quicker(legs, |trial, _| trial.restart(start))
+    }
+
+    /// The same after the corners under way, from when they began.
+    fn going_on(&mut self, legs: &[Leg<N>]) -> (f64, Material) {
+        self.quicker(legs, Corners::follow)
+    }
+
+    fn quicker(
+        &mut self,
+        legs: &[Leg<N>],
+        prepare: impl Fn(&mut Corners<N>, &Corners<N>),
+    ) -> (f64, Material) {
+        let clean = self.is_clean(legs);
+        let Self {
+            trial,
+            corners,
+            vertices,
+            ..
+        } = self;
+        prepare(trial, corners);
+        let of_vertices = trial.time_to_rest(vertices.of(legs));
+        if !clean {
+            prepare(trial, corners);
+            let of_legs = trial.time_to_rest(legs.iter().map(vertex_of));
+            if of_legs < of_vertices {
+                return (of_legs, Material::Legs);
+            }
+        }
+        (of_vertices, Material::Vertices)
+    }
+
+    /// Whether the legs are the vertices.
+    fn is_clean(&self, legs: &[Leg<N>]) -> bool {
+        self.vertices.of(legs).len() == legs.len()
+    }
+
+    /// Plans the corners of a stretch after those under way.
+    pub(super) fn turn(&mut self, legs: &[Leg<N>], material: Material) {
+        let Self {
+            corners, vertices, ..
+        } = self;
+        match material {
+            Material::Vertices => vertices.of(legs).for_each(|vertex| corners.push(vertex)),
+            Material::Legs => legs.iter().for_each(|leg| corners.push(vertex_of(leg))),
+        }
+    }
+}
+
+fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
+    Vertex {
+        point: leg.end,
+        bulge: leg.deviation,
+        feedrate: leg.feedrate,
+        tolerance: leg.tolerance,
+        serves: leg.serves,
+        next: leg.vertices[1],
     }
 }

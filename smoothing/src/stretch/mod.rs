@@ -43,6 +43,8 @@ const STOPS_AHEAD: f64 = 8.0;
 pub(crate) struct Stretches<const N: usize> {
     merger: Merger<N>,
     vertices: Vertices<N>,
+    /// Within an arc, the number of the first vertex after it.
+    arc: Option<u64>,
     legs: Vec<Leg<N>>,
     corners: Corners<N>,
     trial: Corners<N>,
@@ -78,6 +80,7 @@ impl<const N: usize> Stretches<N> {
         Self {
             merger: Merger::new(start, settings.limits, FINE_SHARE),
             vertices: Vertices::with_capacity(MOST_VERTICES + LONGEST_ARC),
+            arc: None,
             legs: Vec::with_capacity(MOST_LEGS + LONGEST_ARC),
             corners: Corners::new(start, settings, MOST_VERTICES + LONGEST_ARC),
             trial: Corners::new(start, settings, 1),
@@ -94,8 +97,11 @@ impl<const N: usize> Stretches<N> {
 
     /// Takes the next vertex.
     pub(crate) fn push(&mut self, vertex: Vertex<N>) {
-        self.vertices.push(vertex);
-        if let Some(leg) = self.merger.push(vertex) {
+        let next = match self.arc {
+            Some(next) => next,
+            None => self.vertices.push(vertex),
+        };
+        if let Some(leg) = self.merger.push(Vertex { next, ..vertex }) {
             self.take(Event::Leg(leg));
         }
         let waiting = self.events.iter().find_map(|event| match event {
@@ -107,12 +113,26 @@ impl<const N: usize> Stretches<N> {
             .forget_before(oldest.map_or(self.merger.first(), |leg| leg.vertices[0]));
     }
 
-    /// An arc begins, whose tolerance this is, or has ended: its legs are the same whatever is beside it.
-    pub(crate) fn part(&mut self, tolerance: Tolerance) {
+    /// An arc of some tolerance begins: its legs are the same whatever is beside it. What corners would make of
+    /// it are these vertices instead of those to come.
+    pub(crate) fn begin_arc(
+        &mut self,
+        tolerance: Tolerance,
+        vertices: impl Iterator<Item = Vertex<N>>,
+    ) {
         self.finish_leg();
         if self.merger.narrows(tolerance) {
             self.rest();
         }
+        for vertex in vertices {
+            self.arc = Some(self.vertices.push(vertex));
+        }
+    }
+
+    /// The arc has ended.
+    pub(crate) fn end_arc(&mut self) {
+        self.finish_leg();
+        self.arc = None;
     }
 
     /// The motion must rest where the path has come to.

@@ -7,7 +7,9 @@
 
 use super::choose::Choice;
 use super::{Cause, Event, MOST_LEGS, SHARP, Stretches};
+use crate::corners::Corners;
 use crate::leg::Leg;
+use crate::merge::Vertex;
 use toolglide_kinematics::Tangential;
 use toolglide_kinematics::numeric::LENGTH_SLACK;
 use toolglide_profiles::Rise;
@@ -15,23 +17,39 @@ use toolglide_profiles::Rise;
 /// Share of the velocity of a leg at which superposed corners are entered on it.
 const ENTERING: f64 = 0.995;
 
+/// Where superposed corners are entered on the first leg of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Entry {
+    distance: f64,
+    speed: f64,
+}
+
+/// Ends corners under way on the first leg of a stretch, whose vertices these are.
+fn enter<const N: usize>(
+    corners: &mut Corners<N>,
+    vertices: impl Iterator<Item = Vertex<N>>,
+    entry: Entry,
+) {
+    corners.part();
+    for vertex in vertices {
+        corners.push(vertex);
+    }
+    corners.close_cruising(entry.distance, entry.speed);
+}
+
 impl<const N: usize> Stretches<N> {
     /// Plans a stretch where the motion is at rest, or is turning corners.
     pub(super) fn set_out(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
         match self.decide(legs) {
-            Choice::Corners => {
+            Choice::Corners(material) => {
                 self.watched |= self.has_arc(legs);
-                let Self {
-                    corners, vertices, ..
-                } = self;
-                for vertex in vertices.of(legs) {
-                    corners.push(*vertex);
-                }
+                self.turn(legs, material);
                 self.pass(legs);
             }
-            Choice::Superposed => {
-                if !(self.corners.has_begun() && self.enter(legs)) {
-                    self.corners.close();
+            Choice::Superposed(entry) => {
+                match entry {
+                    Some(entry) => enter(&mut self.corners, self.vertices.of(&legs[..1]), entry),
+                    None => self.corners.close(),
                 }
                 self.travel(legs, cause);
             }
@@ -82,11 +100,13 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Plans a stretch that has been planned from rest so that it is entered at speed, on its first leg;
-    /// `false` when that is not possible or not faster.
-    fn enter(&mut self, legs: &[Leg<N>]) -> bool {
-        let Some(first) = legs.first() else {
-            return false;
-        };
+    /// how, and how long all takes from when the corners under way began, when that is possible and
+    /// faster.
+    pub(super) fn plan_entering(&mut self, legs: &[Leg<N>]) -> Option<(Entry, f64)> {
+        let first = legs.first()?;
+        if self.has_arc(&legs[..1]) {
+            return None;
+        }
         let speed = ENTERING * first.limits.velocity;
         let Tangential {
             acceleration, jerk, ..
@@ -99,22 +119,11 @@ impl<const N: usize> Stretches<N> {
             .max(rise.distance * (1.0 + LENGTH_SLACK));
         let before = rise.duration() + (distance - rise.distance) / speed;
         let most = self.superposer.planned() - before;
-        if self
-            .superposer
-            .plan_entering(legs, distance, speed, most)
-            .is_none()
-        {
-            return false;
-        }
-        let Self {
-            corners, vertices, ..
-        } = self;
-        corners.part();
-        for vertex in vertices.of(&legs[..1]) {
-            corners.push(*vertex);
-        }
-        corners.close_cruising(distance, speed);
-        true
+        let duration = self.superposer.plan_entering(legs, distance, speed, most)?;
+        let entry = Entry { distance, speed };
+        self.trial.follow(&self.corners);
+        enter(&mut self.trial, self.vertices.of(&legs[..1]), entry);
+        Some((entry, self.trial.duration() + duration))
     }
 
     /// Plans a stretch from where the motion under way may still go on, or else brings that to rest where
@@ -123,11 +132,13 @@ impl<const N: usize> Stretches<N> {
         let fresh = &legs[self.planned..];
         let apart = match cause {
             _ if fresh.is_empty() => None,
+            // Arcs by themselves may be superposed where all moves stop; of lines, stops are among corners.
+            Cause::Full if self.has_arc(fresh) => Some(self.choose(fresh).1),
+            Cause::Full => Some(self.without_superposing(fresh).1),
             // Where the stretch is not cut only for its length, corners, which have not to rest at its ends,
             // may be faster.
-            Cause::Full => Some(self.without_superposing(fresh).1),
             _ => match self.choose(fresh) {
-                (Choice::Superposed, least) => Some(least),
+                (Choice::Superposed(_), least) => Some(least),
                 _ => None,
             },
         };

@@ -1,12 +1,14 @@
 //! The vertices of the legs that may still be planned corner by corner.
 //!
 //! Source: ours. Corners have more of the tolerance to merge with than fine stretches have, and merge
-//! best what has not been merged before. Not here: either merging.
+//! best what has not been merged before. For the same reason their arcs have fewer chords. Not here:
+//! either merging.
 
 use crate::leg::Leg;
 use crate::merge::Vertex;
 use std::collections::VecDeque;
 use std::collections::vec_deque::Iter;
+use std::iter::Copied;
 
 /// The latest vertices of the path, found by their numbers.
 #[derive(Clone, Debug)]
@@ -24,18 +26,20 @@ impl<const N: usize> Vertices<N> {
         }
     }
 
-    pub(super) fn push(&mut self, vertex: Vertex<N>) {
+    /// Takes the next vertex; the number of the one after it.
+    pub(super) fn push(&mut self, vertex: Vertex<N>) -> u64 {
         self.queue.push_back(vertex);
+        self.first + self.queue.len() as u64
     }
 
     /// The vertices of consecutive legs.
-    pub(super) fn of(&self, legs: &[Leg<N>]) -> Iter<'_, Vertex<N>> {
+    pub(super) fn of(&self, legs: &[Leg<N>]) -> Copied<Iter<'_, Vertex<N>>> {
         let range = match legs {
             [first, .., last] => self.place(first.vertices[0])..self.place(last.vertices[1]),
             [only] => self.place(only.vertices[0])..self.place(only.vertices[1]),
             [] => 0..0,
         };
-        self.queue.range(range)
+        self.queue.range(range).copied()
     }
 
     /// Forgets the vertices before a number.

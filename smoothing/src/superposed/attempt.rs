@@ -13,7 +13,7 @@ const FEWEST_STEPS: f64 = 4.0;
 const OVERSHOOT: f64 = 0.015;
 
 /// Rounds of slowing down where a limit or the tolerance is exceeded.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 16;
 
 impl<const N: usize> Superposer<N> {
     pub(super) fn attempt(

@@ -105,6 +105,13 @@ impl<const N: usize> Curve<N> {
             at.start + at.direction * along
         }
     }
+
+    /// The same, going straight on beyond the ends of the curve.
+    #[inline]
+    pub(super) fn point_beyond(&self, distance: f64, leg: usize) -> Vector<N> {
+        let at = &self.legs[leg];
+        at.start + at.direction * (distance - self.marks[leg])
+    }
 }
 
 /// Distance from a point to a segment.

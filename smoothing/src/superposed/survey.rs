@@ -116,13 +116,14 @@ impl<const N: usize> Trial<'_, N> {
         }
     }
 
-    /// Second and third difference of the control points around a distance.
+    /// Second and third difference of the control points around a distance. Stopping at an end is a change of
+    /// speed, and no curvature.
     fn differences(&self, distance: f64, speed: f64) -> [Vector<N>; 2] {
         let reach = speed * self.filter.step;
         let at = |share: f64| {
             let distance = distance + share * reach;
             self.curve
-                .point(distance, self.curve.leg_at(distance, self.near))
+                .point_beyond(distance, self.curve.leg_at(distance, self.near))
         };
         let second = at(1.0) - at(0.0) * 2.0 + at(-1.0);
         let third = at(1.5) - at(0.5) * 3.0 + at(-0.5) * 3.0 - at(-1.5);
