@@ -2,7 +2,8 @@
 //!
 //! Source: ours. Not here: who makes it, and who needs it.
 
-use toolglide_kinematics::{Piece, Vector};
+use toolglide_kinematics::numeric::{JUMP_SLACK, LENGTH_SLACK, TIME_SLACK};
+use toolglide_kinematics::{Piece, Sample, Serves, Vector};
 
 /// A piece of motion, or a place between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,4 +25,38 @@ pub(crate) struct Joint<const N: usize> {
     pub(crate) position: Vector<N>,
     /// mm/s.
     pub(crate) velocity: Vector<N>,
+}
+
+impl<const N: usize> Joint<N> {
+    /// A piece cut in two here, if it passes at the same velocity and keeps it, on that move alone.
+    pub(crate) fn cut(&self, piece: &Piece<N>) -> Option<[Piece<N>; 2]> {
+        let start = piece.at(0.0);
+        let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
+        let speed = self.velocity.norm();
+        let alone = Serves {
+            first: self.index,
+            last: self.index,
+        };
+        if !steady
+            || piece.serves() != alone
+            || (start.velocity - self.velocity).norm() > 0.1 * JUMP_SLACK * speed
+        {
+            return None;
+        }
+        let way = self.position - start.position;
+        let time = way.dot(&self.velocity) / (speed * speed);
+        let inside = time > TIME_SLACK && time < piece.duration() - TIME_SLACK;
+        let off = (way - self.velocity * time).norm();
+        if !inside || off > 0.1 * LENGTH_SLACK {
+            return None;
+        }
+        let rest = Sample {
+            position: self.position,
+            ..start
+        };
+        Some([
+            Piece::new(&start, time, self.position, alone),
+            Piece::new(&rest, piece.duration() - time, piece.end(), alone),
+        ])
+    }
 }

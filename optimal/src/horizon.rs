@@ -2,17 +2,19 @@
 //!
 //! Source: ours. The plan always ends in a full stop at the end of what has been planned. Each window
 //! starts in the state up to which motion has been handed out, covers what was planned behind it and
-//! something new, and ends at rest. Its motion takes the place of the plan only when it has been
-//! accepted and is not worse; else the plan stays as it is, the motion comes to its stop, and goes on
-//! from rest. Not here: how a window is solved.
+//! something new, and ends at rest, or where the middle of a long move begins: that is travelled in
+//! closed form, and the next window starts behind it. A motion takes the place of the plan only when it
+//! has been accepted and is not worse; else the plan stays as it is, the motion comes to its stop, and goes on
+//! from rest. Not here: one window, see [`attempt`].
 
-use crate::accept::accept;
+mod attempt;
+
 use crate::event::{Event, Joint};
 use crate::guess::Guess;
 use crate::safe::{self, Line};
 use crate::settings::Settings;
 use crate::span::{Cruise, Span, steps, weakest};
-use crate::window::{EndState, Segment, Window, WindowMotion, WindowSolver};
+use crate::window::{EndState, Segment, WindowMotion, WindowSolver};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector, WindowTally};
 
@@ -43,19 +45,6 @@ pub(crate) const ROOM: usize = MOST_STEPS + crate::span::MOST_STEPS;
 
 /// Share of every limit that is kept back from the solver, which meets them to its own precision only.
 const MARGIN: f64 = 2e-4;
-
-/// How much slower than a guess the first motion from rest is taken to be.
-const FROM_REST: f64 = 1.1;
-
-/// By what factor planned motion differs from its guess at most.
-const FACTORS: (f64, f64) = (0.7, 1.6);
-
-/// What was planned already may take this much longer in a new plan, which need not brake at its end;
-/// anything more is a bad place to have been led to.
-const WORSE: f64 = 1.001;
-
-/// How much slower than from rest to rest the guess of new spans is, on a grid of intervals.
-const STOPPING: f64 = 1.2;
 
 /// Plans spans from stop to stop.
 #[derive(Clone, Debug)]
@@ -313,205 +302,12 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.reach(self.window + LONGER, FEWEST_SPANS).0 == known
     }
 
-    /// Finds a plan for the first `count` spans that is accepted and no worse than the one there is;
-    /// from rest, where there is none yet, also for fewer. Gives how many it covers.
-    fn improve(&mut self, mut count: usize) -> Option<usize> {
-        // Motion that has just left the middle of a long move can stop at the end of its line.
-        let fewest = if self.moves() {
-            safe::on_one_line(self.spans.iter())
-        } else {
-            1
-        };
-        loop {
-            if self.try_window(count) {
-                return Some(count);
-            }
-            if self.planned > 0 || count <= fewest {
-                return None;
-            }
-            count = (count / 2).max(fewest);
-        }
-    }
-
-    fn try_window(&mut self, count: usize) -> bool {
-        let speed = self.start.velocity.norm();
-        let free = self.free.times.iter().zip(&self.free.steady);
-        for (span, (duration, steady)) in self.spans.iter_mut().zip(free).take(count) {
-            if span.steps == 0 {
-                span.steps = span.steps_for(*duration, *steady);
-            }
-        }
-        let open = self.passes() && count == self.spans.len();
-        self.guess
-            .fill(self.spans.range(..count), speed, open, self.weakest);
-        self.lay_segments(count);
-        self.guess_motion(count);
-        let mut found = self.solve(count);
-        let retained: f64 = self.current.durations.iter().sum();
-        let worse = found
-            && self.planned > 0
-            && self.candidate.durations[..self.planned].iter().sum::<f64>() > WORSE * retained;
-        if self.planned > 0 && (!found || worse) {
-            self.tally.retried += 1;
-            std::mem::swap(&mut self.candidate, &mut self.other);
-            self.continue_plan(count);
-            let again = self.solve(count);
-            if found && (!again || self.other.duration() <= self.candidate.duration()) {
-                std::mem::swap(&mut self.candidate, &mut self.other);
-            }
-            found = found || again;
-        }
-        if !found {
-            return false;
-        }
-        let stopping: f64 = self
-            .spans
-            .range(self.planned..count)
-            .map(safe::stop_to_stop)
-            .sum();
-        if self.candidate.duration() > retained + stopping && self.planned > 0 {
-            return false;
-        }
-        std::mem::swap(&mut self.current, &mut self.candidate);
-        self.planned = count;
-        self.expected.clear();
-        self.expected.extend(&self.guess.times);
-        true
-    }
-
-    /// The segments of a window, for the check and, a little smaller, for the solver.
-    fn lay_segments(&mut self, count: usize) {
-        self.segments.clear();
-        for (index, span) in self.spans.range(..count).enumerate() {
-            let next = self.spans.get(index + 1).filter(|_| index + 1 < count);
-            self.segments.push(Segment {
-                start: span.start,
-                end: span.end,
-                tolerance: span.tube,
-                corner_tolerance: next.map(|next| span.balls[1].min(next.balls[0])),
-                feedrate: span.feedrate,
-                steps: span.steps,
-            });
-        }
-        self.shrunk_segments.clear();
-        let less = |value: f64| value * (1.0 - MARGIN);
-        self.shrunk_segments
-            .extend(self.segments.iter().map(|segment| Segment {
-                tolerance: less(segment.tolerance),
-                corner_tolerance: segment.corner_tolerance.map(less),
-                feedrate: less(segment.feedrate),
-                ..*segment
-            }));
-    }
-
-    /// A guess of durations: what was planned, sped up or slowed down as its guess was; what is new, as
-    /// much slower than its guess as the rest.
-    fn guess_motion(&mut self, count: usize) {
-        self.ratios.clear();
-        self.ratios.extend(
-            self.current
-                .durations
-                .iter()
-                .zip(&self.expected)
-                .map(|(duration, expected)| duration / expected),
-        );
-        self.candidate.durations.clear();
-        for (ratio, time) in self.ratios.iter().zip(&self.guess.times) {
-            self.candidate.durations.push(time * ratio);
-        }
-        self.ratios.sort_unstable_by(f64::total_cmp);
-        let usual = match self.ratios.get(self.ratios.len() / 2) {
-            Some(median) => median.clamp(FACTORS.0, FACTORS.1),
-            None => FROM_REST,
-        };
-        let new = self.guess.times[self.planned.min(count)..count].iter();
-        self.candidate
-            .durations
-            .extend(new.map(|time| time * usual));
-        self.guess_states();
-    }
-
-    /// The plan there is, and new spans from stop to stop behind it.
-    fn continue_plan(&mut self, count: usize) {
-        self.candidate.durations.clear();
-        self.candidate.durations.extend(&self.current.durations);
-        let new = self.spans.range(self.planned..count);
-        self.candidate
-            .durations
-            .extend(new.map(|span| STOPPING * safe::stop_to_stop(span)));
-        self.guess_states();
-    }
-
-    /// States and jerks for the durations of the candidate: those of the plan in its own time, and
-    /// constant speed along what is new.
-    fn guess_states(&mut self) {
-        let end = self.end(self.segments.len());
-        let WindowMotion {
-            durations,
-            states,
-            jerks,
-        } = &mut self.candidate;
-        states.clear();
-        jerks.clear();
-        let mut node = 0;
-        for (index, (segment, &duration)) in self.segments.iter().zip(durations.iter()).enumerate()
-        {
-            if index < self.planned {
-                let ratio = self.current.durations[index] / duration;
-                for _ in 0..segment.steps {
-                    let state = &self.current.states[node];
-                    states.push(EndState {
-                        position: state.position,
-                        velocity: state.velocity * ratio,
-                        acceleration: state.acceleration * (ratio * ratio),
-                    });
-                    jerks.push(self.current.jerks[node] * ratio.powi(3));
-                    node += 1;
-                }
-                continue;
-            }
-            let span = segment.end - segment.start;
-            for step in 0..segment.steps {
-                states.push(EndState {
-                    position: segment.start + span * (steps(step) / steps(segment.steps)),
-                    velocity: span / duration,
-                    acceleration: Vector::zeros(),
-                });
-                jerks.push(Vector::zeros());
-            }
-        }
-        states.push(end);
-        if let Some(first) = states.first_mut() {
-            *first = self.start;
-        }
-    }
-
     /// Where a window of the first `count` spans ends: at rest, or at the goal.
     fn end(&self, count: usize) -> EndState<N> {
         match self.goal {
             Some(goal) if count == self.spans.len() => goal,
             _ => EndState::rest(self.spans[count - 1].end),
         }
-    }
-
-    /// Solves the window for the candidate; whether its motion may be executed.
-    fn solve(&mut self, count: usize) -> bool {
-        let window = Window {
-            start: self.start,
-            end: self.end(count),
-            segments: &self.shrunk_segments,
-            limits: &self.shrunk,
-        };
-        let solved = self.solver.solve(&window, &mut self.candidate, self.solves);
-        if solved.is_err() {
-            return false;
-        }
-        let window = Window {
-            segments: &self.segments,
-            limits: &self.limits,
-            ..window
-        };
-        accept(&window, &mut self.candidate).is_ok()
     }
 
     /// Hands out the plan of the first `count` spans.

@@ -3,34 +3,19 @@
 //! An interval of constant jerk has the Bezier points `v + h a / 2` of velocity (between the
 //! velocities of its nodes) and `p + h v / 3`, `p⁺ - h v⁺ / 3` of position. Node velocities lie
 //! between Bezier points of their neighbours, node positions likewise, so these points bound the
-//! motion at every instant; only where the feedrate changes, the velocity is bounded by itself. Near the ends of a segment the tube is a capsule, elsewhere a cylinder.
+//! motion at every instant; where the feedrate changes, the lower one holds on both sides. Near the ends of a segment the tube is a capsule, elsewhere a cylinder.
 //!
 //! Source: sections 2.2 and 2.3 for the limits; the linearisation in the durations is our own. Not
 //! here: how it is solved, see [`interior`](crate::interior).
 
+mod track;
+
+use self::track::Track;
 use crate::front::{Chain, Interval};
-use crate::rows::{Bounds, Disc, InBox, InDisc, InTube, Rows, Tube};
+use crate::rows::{Bounds, InBox, InDisc, InTube, Rows};
 use crate::spline::{Basis, State};
-use crate::window::{EndState, Segment, Window, WindowDefect};
-use toolglide_kinematics::{Vector, vector::length_and_direction};
-
-/// So many intervals at each end of a segment have a tube with round ends.
-const ROUND_INTERVALS: usize = 2;
-
-/// One segment.
-#[derive(Clone, Copy, Debug)]
-struct Track<const N: usize> {
-    tube: Tube<N>,
-    corner: Option<Disc<N>>,
-    feed: Disc<N>,
-    /// Speed at its end, where the next segment has another feedrate.
-    passing: Option<Disc<N>>,
-    /// Whether an axis alone may be slower than the feedrate.
-    slow_axis: bool,
-    first: usize,
-    steps: usize,
-    duration: f64,
-}
+use crate::window::{EndState, Window, WindowDefect};
+use toolglide_kinematics::Vector;
 
 /// All rows of one node and of the interval after it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,7 +27,6 @@ pub(crate) struct NodeRows<const N: usize> {
     after: InTube<N>,
     before: InTube<N>,
     corner: InDisc<N>,
-    passing: InDisc<N>,
 }
 
 /// Does something with the rows of a node, one point after the other.
@@ -114,7 +98,8 @@ impl<const N: usize> Problem<N> {
         self.tracks.clear();
         self.segment_of.clear();
         for (index, segment) in window.segments.iter().enumerate() {
-            let track = self.track(index, segment, window.segments.get(index + 1))?;
+            let others = [index.wrapping_sub(1), index + 1].map(|other| window.segments.get(other));
+            let track = self.track(index, segment, others)?;
             self.tracks.push(track);
             self.segment_of
                 .extend(std::iter::repeat_n(index, segment.steps));
@@ -130,54 +115,6 @@ impl<const N: usize> Problem<N> {
             self.end_room = tail.used(&self.end[0]).max(1.0);
         }
         Ok(())
-    }
-
-    fn track(
-        &self,
-        index: usize,
-        segment: &Segment<N>,
-        next: Option<&Segment<N>>,
-    ) -> Result<Track<N>, WindowDefect> {
-        if segment.steps < Segment::<N>::FEWEST_STEPS {
-            return Err(WindowDefect::TooFewSteps { segment: index });
-        }
-        let (length, direction) = length_and_direction(&segment.start, &segment.end)
-            .ok_or(WindowDefect::NoLength { segment: index })?;
-        let corner = segment.corner_tolerance;
-        if !(segment.tolerance > 0.0
-            && segment.feedrate > 0.0
-            && corner.is_none_or(|tolerance| tolerance > 0.0))
-        {
-            return Err(WindowDefect::NotPositive { segment: index });
-        }
-        let speed = |feedrate: f64| Disc {
-            center: Vector::zeros(),
-            by_radius: 1.0 / feedrate,
-            room: 1.0,
-        };
-        let slowest = next.map(|next| segment.feedrate.min(next.feedrate));
-        let fastest = next.map(|next| segment.feedrate.max(next.feedrate));
-        Ok(Track {
-            tube: Tube {
-                start: segment.start - self.origin,
-                direction,
-                length,
-                by_radius: 1.0 / segment.tolerance,
-                room: 1.0,
-                capsule: true,
-            },
-            corner: corner.filter(|_| next.is_some()).map(|tolerance| Disc {
-                center: segment.end - self.origin,
-                by_radius: 1.0 / tolerance,
-                room: 1.0,
-            }),
-            feed: speed(segment.feedrate),
-            passing: slowest.filter(|_| slowest < fastest).map(speed),
-            slow_axis: self.by_velocity.max() * segment.feedrate > 1.0,
-            first: self.segment_of.len(),
-            steps: segment.steps,
-            duration: 0.0,
-        })
     }
 
     pub(crate) fn relative(&self, state: &EndState<N>) -> State<N> {
@@ -275,7 +212,7 @@ impl<const N: usize> Problem<N> {
         for track in &self.tracks {
             let boxes = if track.slow_axis { 3 } else { 2 };
             degree += track.steps * (boxes * 2 * N + 1 + 6);
-            degree += usize::from(track.corner.is_some()) + usize::from(track.passing.is_some());
+            degree += usize::from(track.corner.is_some());
         }
         // The ends have no bound of acceleration but one.
         count(degree - 2 * N)
@@ -368,7 +305,7 @@ impl<const N: usize> Problem<N> {
             base: self.base(node, 2),
             weights: basis.speed,
         };
-        let mut feed = track.feed;
+        let mut feed = track.feed(node - track.first);
         let mut tube = track.tube;
         tube.capsule = track.is_round(node - track.first);
         if node == 0 {
@@ -409,23 +346,15 @@ impl<const N: usize> Problem<N> {
                 weights: basis.acceleration,
             };
             visit.rows(&mut rows.acceleration, &self.by_acceleration, &still);
-            if node == track.first + track.steps {
-                if let Some(corner) = &track.corner {
-                    let position = Chain {
-                        order: 0,
-                        weights: basis.position,
-                        ..still
-                    };
-                    visit.rows(&mut rows.corner, corner, &position);
-                }
-                if let Some(passing) = &track.passing {
-                    let velocity = Chain {
-                        order: 1,
-                        weights: basis.velocity,
-                        ..still
-                    };
-                    visit.rows(&mut rows.passing, passing, &velocity);
-                }
+            if let Some(corner) = &track.corner
+                && node == track.first + track.steps
+            {
+                let position = Chain {
+                    order: 0,
+                    weights: basis.position,
+                    ..still
+                };
+                visit.rows(&mut rows.corner, corner, &position);
             }
         }
         let position = Chain {
@@ -435,28 +364,6 @@ impl<const N: usize> Problem<N> {
             weights: basis.before,
         };
         visit.rows(&mut rows.before, &tube, &position);
-    }
-}
-
-impl<const N: usize> Track<N> {
-    #[inline(always)]
-    fn is_round(&self, interval: usize) -> bool {
-        interval < ROUND_INTERVALS || interval + ROUND_INTERVALS >= self.steps
-    }
-
-    fn whole(&self) -> f64 {
-        self.duration * count(self.steps)
-    }
-
-    /// Share of the tolerance that a point uses.
-    fn used(&self, point: &Vector<N>) -> f64 {
-        let offset = point - self.tube.start;
-        let along = self
-            .tube
-            .direction
-            .dot(&offset)
-            .clamp(0.0, self.tube.length);
-        (offset - self.tube.direction * along).norm() * self.tube.by_radius
     }
 }
 

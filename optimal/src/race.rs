@@ -7,8 +7,8 @@
 
 use crate::event::{Event, Joint};
 use std::collections::VecDeque;
-use toolglide_kinematics::numeric::{JUMP_SLACK, LENGTH_SLACK, TIME_SLACK};
-use toolglide_kinematics::{Piece, Sample, Serves};
+use toolglide_kinematics::Piece;
+use toolglide_kinematics::numeric::TIME_SLACK;
 
 /// Events held of either motion before a stretch is led by one of them: some minutes, and some ten
 /// megabytes.
@@ -275,7 +275,7 @@ impl<const N: usize> Race<N> {
             if piece.serves().first > joint.index {
                 return Place::Nowhere;
             }
-            if let Some([before, after]) = halves(&piece, joint) {
+            if let Some([before, after]) = joint.cut(&piece) {
                 self.theirs[at] = before;
                 self.theirs.insert(at + 1, after);
                 return Place::After(at + 1);
@@ -343,36 +343,4 @@ impl<const N: usize> Race<N> {
             self.ends.pop_front();
         }
     }
-}
-
-/// A piece cut in two at a joint, if it passes that at the same velocity and keeps it, on that move alone.
-fn halves<const N: usize>(piece: &Piece<N>, joint: &Joint<N>) -> Option<[Piece<N>; 2]> {
-    let start = piece.at(0.0);
-    let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
-    let speed = joint.velocity.norm();
-    let alone = Serves {
-        first: joint.index,
-        last: joint.index,
-    };
-    if !steady
-        || piece.serves() != alone
-        || (start.velocity - joint.velocity).norm() > 0.1 * JUMP_SLACK * speed
-    {
-        return None;
-    }
-    let way = joint.position - start.position;
-    let time = way.dot(&joint.velocity) / (speed * speed);
-    let inside = time > TIME_SLACK && time < piece.duration() - TIME_SLACK;
-    let off = (way - joint.velocity * time).norm();
-    if !inside || off > 0.1 * LENGTH_SLACK {
-        return None;
-    }
-    let rest = Sample {
-        position: joint.position,
-        ..start
-    };
-    Some([
-        Piece::new(&start, time, joint.position, alone),
-        Piece::new(&rest, piece.duration() - time, piece.end(), alone),
-    ])
 }

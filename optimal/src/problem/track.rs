@@ -1,0 +1,113 @@
+//! What one segment of a window asks of the motion along it.
+//!
+//! Source: as [`problem`](super). Not here: which point of the motion keeps it.
+
+use super::{Problem, count};
+use crate::rows::{Disc, Tube};
+use crate::window::{Segment, WindowDefect};
+use toolglide_kinematics::{Vector, vector::length_and_direction};
+
+/// So many intervals at each end of a segment have a tube with round ends.
+const ROUND_INTERVALS: usize = 2;
+
+/// One segment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Track<const N: usize> {
+    pub(super) tube: Tube<N>,
+    pub(super) corner: Option<Disc<N>>,
+    pub(super) feed: Disc<N>,
+    /// The same in its first and in its last interval.
+    passing: [Disc<N>; 2],
+    /// Whether an axis alone may be slower than the feedrate.
+    pub(super) slow_axis: bool,
+    pub(super) first: usize,
+    pub(super) steps: usize,
+    pub(super) duration: f64,
+}
+
+impl<const N: usize> Problem<N> {
+    /// Makes a track of the next segment.
+    pub(super) fn track(
+        &self,
+        index: usize,
+        segment: &Segment<N>,
+        [before, next]: [Option<&Segment<N>>; 2],
+    ) -> Result<Track<N>, WindowDefect> {
+        if segment.steps < Segment::<N>::FEWEST_STEPS {
+            return Err(WindowDefect::TooFewSteps { segment: index });
+        }
+        let (length, direction) = length_and_direction(&segment.start, &segment.end)
+            .ok_or(WindowDefect::NoLength { segment: index })?;
+        let corner = segment.corner_tolerance;
+        if !(segment.tolerance > 0.0
+            && segment.feedrate > 0.0
+            && corner.is_none_or(|tolerance| tolerance > 0.0))
+        {
+            return Err(WindowDefect::NotPositive { segment: index });
+        }
+        let speed = |feedrate: f64| Disc {
+            center: Vector::zeros(),
+            by_radius: 1.0 / feedrate,
+            room: 1.0,
+        };
+        Ok(Track {
+            tube: Tube {
+                start: segment.start - self.origin,
+                direction,
+                length,
+                by_radius: 1.0 / segment.tolerance,
+                room: 1.0,
+                capsule: true,
+            },
+            corner: corner.filter(|_| next.is_some()).map(|tolerance| Disc {
+                center: segment.end - self.origin,
+                by_radius: 1.0 / tolerance,
+                room: 1.0,
+            }),
+            feed: speed(segment.feedrate),
+            passing: [before, next].map(|other| {
+                let feedrate = other.map_or(segment.feedrate, |other| other.feedrate);
+                speed(feedrate.min(segment.feedrate))
+            }),
+            slow_axis: self.by_velocity.max() * segment.feedrate > 1.0,
+            first: self.segment_of.len(),
+            steps: segment.steps,
+            duration: 0.0,
+        })
+    }
+}
+
+impl<const N: usize> Track<N> {
+    /// Largest speed in an interval. Where the feedrate changes the lower one holds on both sides, so that
+    /// the velocity between them, which is a mean of both, keeps it too.
+    #[inline(always)]
+    pub(super) fn feed(&self, interval: usize) -> Disc<N> {
+        if interval == 0 {
+            self.passing[0]
+        } else if interval + 1 == self.steps {
+            self.passing[1]
+        } else {
+            self.feed
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn is_round(&self, interval: usize) -> bool {
+        interval < ROUND_INTERVALS || interval + ROUND_INTERVALS >= self.steps
+    }
+
+    pub(super) fn whole(&self) -> f64 {
+        self.duration * count(self.steps)
+    }
+
+    /// Share of the tolerance that a point uses.
+    pub(super) fn used(&self, point: &Vector<N>) -> f64 {
+        let offset = point - self.tube.start;
+        let along = self
+            .tube
+            .direction
+            .dot(&offset)
+            .clamp(0.0, self.tube.length);
+        (offset - self.tube.direction * along).norm() * self.tube.by_radius
+    }
+}
