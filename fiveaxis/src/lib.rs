@@ -8,6 +8,7 @@
 mod accumulate;
 mod block;
 mod corner;
+mod cuts;
 mod error;
 mod follow;
 mod joint;

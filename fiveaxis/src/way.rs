@@ -30,17 +30,8 @@ const RESOLVED: f64 = 1e-4;
 /// Shares shorter than this are not halved: a motion that changes within it goes through a pole.
 const SHORTEST: f64 = 1e-7;
 
-/// A block is cut where its parts alone take less than this share of its time.
-const WORTH_CUTTING: f64 = 0.7;
-
-/// Parts whose times for a share of 1 differ by less than this factor stay together.
-const ALIKE: f64 = 2.0;
-
-/// Shortest duration of what is cut off, as a share of the delay of the chain.
-const SHORTEST_CUT: f64 = 0.25;
-
 /// The first three derivatives of the position of an axis along a block, each for a share of 1.
-type Slopes = [f64; 3];
+pub(crate) type Slopes = [f64; 3];
 
 /// What is known of one axis along a block.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,10 +46,11 @@ pub(crate) struct AxisWay {
 
 /// A part of a block that has a polynomial of its own.
 #[derive(Clone, Debug)]
-struct Part {
-    end: f64,
+pub(crate) struct Part {
+    /// Share at which it ends.
+    pub(crate) end: f64,
     /// What the derivatives are at most, axis by axis.
-    most: [Slopes; MOST_AXES],
+    pub(crate) most: [Slopes; MOST_AXES],
 }
 
 /// The way of the axes along a block.
@@ -68,7 +60,7 @@ pub(crate) struct Way {
     positions: Vec<(f64, AxisVector)>,
     axes: Vec<AxisWay>,
     /// Parts of the block, where it has more than one.
-    parts: Vec<Part>,
+    pub(crate) parts: Vec<Part>,
     /// Whether the polynomials are near enough.
     known: bool,
 }
@@ -198,42 +190,6 @@ impl Way {
         all
     }
 
-    /// Shares at which a block of a given duration is better cut, because a part of it, as beside a pole,
-    /// must be much slower than the rest.
-    pub(crate) fn cuts(&self, axes: &[Axis], asked: f64, chain: &FilterChain) -> Vec<f64> {
-        let mut begin = 0.0;
-        let mut paces = Vec::with_capacity(self.parts.len());
-        for part in &self.parts {
-            let mut pace = asked;
-            for (limits, [first, second, third]) in axes.iter().zip(part.most) {
-                let limits = &limits.limits;
-                pace = pace
-                    .max(first / limits.velocity())
-                    .max((second / limits.acceleration()).sqrt())
-                    .max((third / limits.jerk()).cbrt());
-            }
-            paces.push((pace, part.end - begin));
-            begin = part.end;
-        }
-        let slowest = paces.iter().map(|(pace, _)| *pace).fold(0.0, f64::max);
-        let each: f64 = paces.iter().map(|(pace, share)| pace * share).sum();
-        let mut cuts = Vec::new();
-        if each > WORTH_CUTTING * slowest {
-            return cuts;
-        }
-        let shortest = SHORTEST_CUT * chain.total_delay();
-        let (mut least, mut most, mut width) = (f64::INFINITY, 0.0_f64, 0.0);
-        for ((pace, share), part) in paces.iter().zip(&self.parts) {
-            let alike = *pace <= ALIKE * least && ALIKE * *pace >= most;
-            if width > 0.0 && !alike && most * width >= shortest {
-                cuts.push(part.end - share);
-                (least, most, width) = (f64::INFINITY, 0.0, 0.0);
-            }
-            (least, most, width) = (least.min(*pace), most.max(*pace), width + share);
-        }
-        cuts
-    }
-
     /// Where the axes are at the start.
     pub(crate) fn first(&self) -> &AxisVector {
         &self.positions[0].1
@@ -292,25 +248,6 @@ impl Way {
 }
 
 impl PoseBlock {
-    /// The part of the block from one share of it to another.
-    pub(crate) fn part(&self, from: f64, to: f64) -> Self {
-        let at = |share: f64| {
-            if share >= 1.0 {
-                self.end
-            } else {
-                self.start + (self.end - self.start) * share
-            }
-        };
-        Self {
-            start: at(from),
-            end: at(to),
-            length: self.length * (to - from),
-            turn: self.turn.part(from, to),
-            duration: self.duration * (to - from),
-            ..*self
-        }
-    }
-
     /// Pose at a share of the block.
     pub(crate) fn pose(&self, share: f64) -> Result<ToolPose, FiveAxisError> {
         let tip = if share >= 1.0 {
