@@ -1,5 +1,7 @@
 //! Motion past the pole of a machine, where a rotary axis turns half around at once.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use common::{judge, legs, plan, pose, settings, start_of, table_ac};
