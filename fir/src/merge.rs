@@ -126,11 +126,12 @@ impl<const N: usize> Merger<N> {
         self.anchor = end;
     }
 
-    /// Moves that such a pulse serves, those that were carried among them.
-    pub(crate) fn serve(&mut self, serves: Serves) -> Serves {
-        let (serves, ..) = self.with_carried(serves, 0.0, f64::INFINITY);
+    /// Moves that such a pulse serves, those that were carried among them, and what the carried ones leave
+    /// of their tolerance.
+    pub(crate) fn serve(&mut self, serves: Serves) -> (Serves, f64) {
+        let (serves, stray, tolerance) = self.with_carried(serves, 0.0, f64::INFINITY);
         self.carried = None;
-        serves
+        (serves, tolerance - stray)
     }
 
     /// Moves that led nowhere and that no leg has served.
@@ -262,6 +263,19 @@ mod tests {
         let leg = merger.flush().unwrap();
         assert_eq!(leg.serves, Serves { first: 0, last: 2 }, "moves");
         assert!((leg.room - 0.09).abs() < 1e-15, "{} mm are left", leg.room);
+    }
+
+    #[test]
+    fn a_pulse_that_is_no_leg_keeps_the_tolerance_of_what_it_serves() {
+        let mut merger = Merger::new(Vector::<2>::zeros());
+        merger.push(vertex([0.01, 0.0], 0));
+        merger.push(vertex([0.0, 0.0], 1));
+        merger.flush();
+        let own = Serves { first: 2, last: 2 };
+        let (serves, room) = merger.serve(own);
+        assert_eq!(serves, Serves { first: 0, last: 2 }, "moves");
+        assert!((room - 0.09).abs() < 1e-15, "{room} mm are left");
+        assert_eq!(merger.serve(own), (own, f64::INFINITY), "served once");
     }
 
     #[test]

@@ -194,7 +194,8 @@ impl<const N: usize> FirInterpolation<N> {
                     self.merger.carry(serves, 0.0, tolerance);
                     return true;
                 }
-                let serves = self.merger.serve(serves);
+                let (serves, room) = self.merger.serve(serves);
+                let tolerance = tolerance.min(ARC_SHARE * room);
                 self.merger.go_to(vertex);
                 let mut pulse = Pulse::between((from, vertex), feedrate, tolerance, serves);
                 pulse.smooth = more;
