@@ -170,6 +170,11 @@ impl<R: BufRead> Flow<R> {
         }
     }
 
+    /// Whether the line being run may run again.
+    pub(crate) fn repeats(&self) -> bool {
+        self.current.is_some() || self.tape.as_ref().is_some_and(|tape| !tape.at_front())
+    }
+
     /// Index of the line being run on the tape.
     pub(crate) fn tape_index(&self) -> usize {
         self.tape.as_ref().map_or(0, Tape::index)

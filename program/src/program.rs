@@ -28,6 +28,10 @@ use toolglide_kinematics::Move;
 /// for each of its lines.
 pub const MOST_WARNINGS: usize = 100;
 
+/// Refusals within loops and subroutines, after which it makes no sense to go on: a loop that does not
+/// count because its lines are refused has no end.
+const MOST_REPEATED_REFUSALS: u32 = 1000;
+
 /// Reads a part program and yields its moves, in order.
 ///
 /// It holds one line at a time, and the loops and subroutines that it has met. After the first refusal
@@ -46,6 +50,7 @@ pub struct Program<R> {
     ended: bool,
     pub(crate) past_refusals: bool,
     aftermath: Aftermath,
+    repeated_refusals: u32,
     pub(crate) sinumerik: Option<Sinumerik>,
 }
 
@@ -65,6 +70,7 @@ impl<R: BufRead> Program<R> {
             ended: false,
             past_refusals: false,
             aftermath: Aftermath::default(),
+            repeated_refusals: 0,
             sinumerik: None,
         }
     }
@@ -238,6 +244,12 @@ impl<R: BufRead> Program<R> {
                 self.ended = true;
             }
             self.waiting.clear();
+            if self.flow.repeats() {
+                self.repeated_refusals += 1;
+                if self.repeated_refusals >= MOST_REPEATED_REFUSALS {
+                    self.ended = true;
+                }
+            }
             let consequence = self.aftermath.explains(&fault.reason, lost);
             let arrived = self.lowering.arrived;
             self.aftermath.take(self.flow.text(), arrived);

@@ -34,7 +34,8 @@ impl<R: BufRead> Program<R> {
         String::from_utf8_lossy(self.flow.text())
     }
 
-    /// What should be known of the lines read so far; [`MOST_WARNINGS`] at most.
+    /// What should be known of the lines read so far; [`MOST_WARNINGS`](crate::MOST_WARNINGS)
+    /// at most.
     #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings

@@ -35,9 +35,15 @@ impl<R: BufRead> Flow<R> {
                 self.skip_order(span, "IF", &["ENDIF"], "ENDIF")?;
             }
             "WHILE" => {
-                let holds = condition(&mut reader, state)?;
-                if !holds {
+                let holds = condition(&mut reader, state);
+                // A loop whose condition is wrong is passed over.
+                if !matches!(holds, Ok(true)) {
+                    let here = self.tape_index();
                     self.skip_order(span, "WHILE", &["ENDWHILE"], "ENDWHILE")?;
+                    if let Err(fault) = holds {
+                        self.show(here);
+                        return Err(fault);
+                    }
                 }
             }
             "FOR" => self.for_order(&mut reader, span, state, false)?,
@@ -66,10 +72,11 @@ impl<R: BufRead> Flow<R> {
                 let mut reader = Reader::new(&line);
                 reader.at = beginning.end;
                 let span = Span::new(beginning.start, beginning.end);
-                self.for_order(&mut reader, span, state, true)?;
-                if self.tape_index() != head {
+                let outcome = self.for_order(&mut reader, span, state, true);
+                if outcome.is_err() || self.tape_index() != head {
                     self.tape_to(foot);
                 }
+                outcome?;
             }
             "GOTOF" | "GOTOB" | "GOTO" | "GOTOC" => self.jump(&mut reader, span, order)?,
             // LOOP, REPEAT and ENDIF say where a block begins or ends, and nothing else.
@@ -274,6 +281,13 @@ impl<R: BufRead> Flow<R> {
         }
         self.look(false);
         found
+    }
+
+    /// Shows a line of the tape as the one being run, and goes on where it is.
+    fn show(&mut self, index: usize) {
+        if let Some(tape) = &mut self.tape {
+            tape.show(index);
+        }
     }
 
     fn look(&mut self, looking: bool) {

@@ -79,6 +79,11 @@ impl Tape {
         self.next = index + 1;
     }
 
+    /// Makes the line at an index the one being run, and goes on where it is.
+    pub(crate) fn show(&mut self, index: usize) {
+        self.at = index;
+    }
+
     /// Goes on with the line at an index.
     pub(crate) fn go_before(&mut self, index: usize) {
         self.next = index;

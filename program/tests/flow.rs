@@ -323,3 +323,16 @@ fn a_negative_number_of_repetitions_is_none() {
 fn the_number_of_a_line_is_that_of_the_line_being_read() {
     assert_x("G0 X#<_line>\n\nX#<_line>", &[1.0, 3.0]);
 }
+
+#[test]
+fn refusals_within_loops_do_not_go_on_for_ever() {
+    for text in [
+        "o1 while [#1 lt 5]\n#1=[1+\no1 endwhile\n",
+        "o1 while [#1 lt\nG0 X1\no1 endwhile\n",
+        "o1 sub\n~\no1 call\no1 endsub\no1 call\n",
+    ] {
+        let program = Program::new(text.as_bytes(), FILE, settings()).past_refusals();
+        let refused = program.filter(Result::is_err).count();
+        assert!((1..=1001).contains(&refused), "{text:?}: {refused}");
+    }
+}

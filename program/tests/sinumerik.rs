@@ -333,3 +333,17 @@ fn a_loop_without_end_ends_with_an_error() {
         );
     }
 }
+
+#[test]
+fn refusals_within_loops_do_not_go_on_for_ever() {
+    for text in [
+        "WHILE R9<2\nG0 X1\nENDWHILE\n",
+        "DEF INT I\nFOR I=1 TO R9\nG0 X1\nENDFOR\n",
+        "R1=0\nWHILE R1<2\nR1=R1+R9\nENDWHILE\n",
+        "AGAIN: G0 X1\nR1=R9\nGOTOB AGAIN\n",
+    ] {
+        let poses = Poses::new(text.as_bytes(), FILE, settings(), Language::Sinumerik);
+        let refused = poses.past_refusals().filter(Result::is_err).count();
+        assert!((1..=1001).contains(&refused), "{text:?}: {refused}");
+    }
+}
