@@ -100,3 +100,15 @@ fn moves_that_lead_nowhere_before_an_arc_are_passed_within_their_own_tolerance()
 ] };
     holds(&course, &[[10.000000000000002, 760.7002260999658, 2282.1006782998975]; 3]);
 }
+
+#[test]
+#[rustfmt::skip]
+fn a_reversal_just_before_an_arc_leaves_it_its_tolerance_between_vertices() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(Lead::Line([1.0, 0.0]), 1.0, 0.003752071939159602),
+    go(Lead::Line([2.0, 0.0]), INF, 0.003752071939159602),
+    go(Lead::Line([1.8407067589245272, -0.000477964786179306]), INF, 0.003752071939159602),
+    go(arc([1.8407067589245272, -17.85365322815061], [19.5775337927224, -19.88855709751265], [1, 0], false, 0), INF, 0.003752071939159602),
+] };
+    holds(&course, &[[624.770526907623, 25591.906876859484, 1320715.8654862135]; 2]);
+}

@@ -9,6 +9,10 @@ use toolglide_kinematics::numeric::LIMIT_SLACK;
 /// Corners that contribute less than this share of the tolerance are left as they are.
 const SHARE_THAT_COUNTS: f64 = 0.02;
 
+/// By how much more the motion may be inside an arc between two vertices than at them while a corner is in
+/// the window, as a share of how far they lie outside: two thirds of it have been seen.
+const BETWEEN_VERTICES: f64 = 0.25;
+
 /// Rounds of corrections; after that dwells are lengthened only, which always succeeds.
 const ROUNDS: u32 = 40;
 
@@ -50,7 +54,9 @@ impl<const N: usize> LookAhead<N> {
                 if bulge > 0.0 {
                     // The turns of the arc lead inside, where the vertex does not count against them.
                     let share = self.schedule.share_of_corners(&self.pulses);
-                    bound += bulge * (2.0 * share).min(1.0);
+                    if share > 0.0 {
+                        bound += bulge * (BETWEEN_VERTICES + 2.0 * share).min(1.0);
+                    }
                 }
                 if bound > allowed * (1.0 + LIMIT_SLACK) {
                     broken = true;
@@ -85,7 +91,8 @@ impl<const N: usize> LookAhead<N> {
         if !same(corner) {
             return false;
         }
-        let reach = 0.5 * total;
+        // Where feedrates differ, the instant in question is anywhere in the window.
+        let reach = total;
         let mut index = corner;
         while self.schedule.end(corner) - self.schedule.begin(index) < reach {
             if index == 0 || !same(index - 1) {
