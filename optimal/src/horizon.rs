@@ -21,7 +21,7 @@ use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector, WindowTally};
 /// What is handed out of a window, in times to stop.
 const COMMIT: f64 = 4.0;
 
-/// Of a window that is cut short, one span in so many is not handed out.
+/// Of the spans of a window one in so many is not handed out at least, however short they are.
 const UNCOMMITTED: usize = 3;
 
 /// How much longer a window up to a stop of the path may be, in times to stop: then what is left is

@@ -27,20 +27,20 @@ impl Effort {
 
     /// Linearised problems allowed for a window.
     pub(crate) fn solves(self) -> usize {
-        2 + 2 * usize::from(self.0)
+        5 + usize::from(self.0)
     }
 
     /// Length of a window in times to stop: the part that is handed out, and from one upwards for the way
     /// on to be free and for the stop at the end.
     pub(crate) fn window(self) -> f64 {
-        4.5 + 0.3 * f64::from(self.0)
+        4.0 + 0.3 * f64::from(self.0)
     }
 
     /// Interval as a share of the time in which the acceleration is built up: from a sixth down to a
     /// thirtieth. What the interval costs in cycle time goes with its square, what it saves in planning
     /// with itself.
     pub(crate) fn fineness(self) -> Fineness {
-        Fineness(0.15 * 0.82_f64.powi(i32::from(self.0) - 1))
+        Fineness(0.17 * 0.82_f64.powi(i32::from(self.0) - 1))
     }
 }
 
