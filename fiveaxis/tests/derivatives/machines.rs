@@ -1,0 +1,126 @@
+//! Inverse kinematics of two kinds of machine, written out for series in time.
+//!
+//! Source: the directions of the machine axes as the workpiece sees them, without any angle. Not here:
+//! choosing a branch.
+
+use crate::jet::{Jet, JetVector};
+use toolglide_kinematics::{Axis, MachineKinematics};
+use toolglide_machines::find;
+
+/// Which inverse kinematics a machine has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form {
+    TableAc,
+    HeadBc,
+}
+
+/// A machine, its form, and its distances.
+pub(crate) struct Case {
+    pub(crate) name: &'static str,
+    form: Form,
+    pub(crate) machine: Box<dyn MachineKinematics>,
+    pub(crate) axes: Vec<Axis>,
+    /// From machine zero to the tilting axis.
+    tilt_axis: [f64; 3],
+    /// From there to the center of the table; or from the C axis of a head to its spindle.
+    offset: [f64; 3],
+    pivot: f64,
+}
+
+impl Case {
+    pub(crate) fn new(name: &'static str, changes: &[(&str, f64)]) -> Self {
+        let model = find(name).unwrap();
+        let mut config = (model.preset)();
+        for axis in &mut config.axis {
+            axis.travel = None;
+        }
+        for &(distance, value) in changes {
+            config.geometry.insert(distance.to_owned(), value);
+        }
+        let of = |distance: &str| config.geometry.get(distance).copied().unwrap_or(0.0);
+        let (form, tilt_axis, offset) = if name == "table-ac" {
+            (
+                Form::TableAc,
+                ["a_axis_x", "a_axis_y", "a_axis_z"].map(of),
+                ["c_axis_x", "c_axis_y", "c_axis_z"].map(of),
+            )
+        } else {
+            (
+                Form::HeadBc,
+                [0.0; 3],
+                [of("b_axis_x"), of("spindle_y"), 0.0],
+            )
+        };
+        let pivot = of("pivot");
+        let machine = (model.build)(&config).unwrap();
+        let axes = machine.axes().to_vec();
+        Self {
+            name,
+            form,
+            machine,
+            axes,
+            tilt_axis,
+            offset,
+            pivot,
+        }
+    }
+
+    /// The axes where the tilting axis is at a positive angle (`side` 1) or a negative one (-1).
+    pub(crate) fn axes_at(&self, tip: JetVector, tool: JetVector, side: f64) -> [Jet; 5] {
+        let [i, j, k] = tool.0;
+        let across = (i * i + j * j).root();
+        let tilt = Jet::angle(across, k).times(side);
+        let up = JetVector::constant([0.0, 0.0, 1.0]);
+        let [x, y, z] = self.offset.map(Jet::constant);
+        match self.form {
+            // The directions of the machine axes seen from the workpiece: Z is the tool, and X is the
+            // tilting axis, across the tool and the axis of the table.
+            Form::TableAc => {
+                let scale = Jet::constant(side).over(across);
+                let along_x = JetVector([j * scale, -(i * scale), Jet::constant(0.0)]);
+                let along_y = tool.cross(along_x);
+                let point = tip + along_x.scaled(x) + up.cross(along_x).scaled(y) + up.scaled(z);
+                let [a, b, c] = self.tilt_axis.map(Jet::constant);
+                [
+                    a + along_x.dot(point),
+                    b + along_y.dot(point),
+                    c + tool.dot(point),
+                    tilt,
+                    Jet::angle(i.times(side), j.times(side)),
+                ]
+            }
+            // The pivot is behind the tip along the tool.
+            Form::HeadBc => {
+                let scale = Jet::constant(side).over(across);
+                let forward = JetVector([i * scale, j * scale, Jet::constant(0.0)]);
+                let sideward = up.cross(forward);
+                let reach = Jet::constant(self.pivot);
+                let slide = tip + tool.scaled(reach) - forward.scaled(x) - sideward.scaled(y);
+                let [p, q, r] = slide.0;
+                [
+                    p + x,
+                    q + y,
+                    r - reach,
+                    tilt,
+                    Jet::angle(j.times(side), i.times(side)),
+                ]
+            }
+        }
+    }
+}
+
+/// The machines that are looked at.
+pub(crate) fn cases() -> [Case; 4] {
+    [
+        Case::new("table-ac", &[]),
+        Case::new("head-bc", &[]),
+        Case::new("table-ac", &[("c_axis_x", 1.0), ("c_axis_y", -2.0)]),
+        Case::new("head-bc", &[("b_axis_x", 20.0), ("spindle_y", 3.0)]),
+    ]
+}
+
+/// Velocity, acceleration and jerk that an axis may have.
+pub(crate) fn limits(axis: &Axis) -> [f64; 3] {
+    let limits = &axis.limits;
+    [limits.velocity(), limits.acceleration(), limits.jerk()]
+}
