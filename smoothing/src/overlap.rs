@@ -31,12 +31,13 @@ pub(crate) struct Between<'a, const N: usize> {
 
 impl<const N: usize> Between<'_, N> {
     /// The least duration found from the middle of one corner to the middle of the next, or `None`
-    /// when these two cannot overlap.
+    /// when these two cannot overlap, or not in less than `most`.
     pub(crate) fn duration(
         &self,
         from: &TurnShape,
         to: &TurnShape,
         limits: &Limits<N>,
+        most: f64,
     ) -> Option<f64> {
         if !(from.is_uninterrupted() && to.is_uninterrupted()) {
             return None;
@@ -44,7 +45,7 @@ impl<const N: usize> Between<'_, N> {
         let (start, end) = self.middles(from, to);
         let distance = (end.position - start.position).norm();
         let typical = 2.0 * distance / (start.velocity.norm() + end.velocity.norm());
-        if !typical.is_finite() {
+        if !typical.is_finite() || SHORTEST * typical >= most {
             return None;
         }
         let fits = |duration: f64| self.fits(&start, &end, duration, limits);
@@ -54,6 +55,9 @@ impl<const N: usize> Between<'_, N> {
         }
         let mut failed = 0.0;
         for (from, to) in marks.spans() {
+            if from >= most {
+                return None;
+            }
             if fits(from) {
                 return Some(from);
             }

@@ -189,7 +189,7 @@ impl<const N: usize> Corners<N> {
     fn end(&mut self, leg: Leg<N>, shape: TurnShape) {
         let link = link_of(&leg);
         self.legs.push_back(leg);
-        self.lattice.push(&link, &[shape], &[], |_, _| None);
+        self.lattice.push(&link, &[shape], &[], |_, _, _| None);
         self.offered += 1;
         self.lattice.finish();
     }

@@ -65,13 +65,13 @@ impl<const N: usize> Corners<N> {
                 &link,
                 &candidates[..safe],
                 &candidates[safe..count],
-                |from, to| {
+                |from, to, most| {
                     let between = Between {
                         before: last?,
                         leg,
                         after: next?,
                     };
-                    between.duration(from, to, &self.limits)
+                    between.duration(from, to, &self.limits, most)
                 },
             );
             self.last_offered = Some(*leg);

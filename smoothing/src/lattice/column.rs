@@ -82,23 +82,31 @@ impl Column {
         best
     }
 
-    /// Finds the cheapest way to each candidate over `link`.
+    /// Finds the cheapest way to each candidate over `link`; `overlap` is also told the duration beyond
+    /// which it need not look.
     pub(super) fn reach_from(
         &mut self,
         last: &Self,
         link: &Link,
-        overlap: impl Fn(&TurnShape, &TurnShape) -> Option<f64>,
+        overlap: impl Fn(&TurnShape, &TurnShape, f64) -> Option<f64>,
     ) {
         for candidate in 0..self.count {
             let to = self.shapes[candidate];
+            // What looks cheapest comes first, so that little else has to be planned.
+            let mut ways = [(f64::INFINITY, 0); MOST_CANDIDATES];
+            for (origin, way) in ways.iter_mut().enumerate().take(last.count) {
+                let from = &last.shapes[origin];
+                *way = (last.costs[origin] + least_duration(from, &to, link), origin);
+            }
+            let ways = &mut ways[..last.count];
+            ways.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
             let mut best = f64::INFINITY;
-            for origin in 0..last.count {
+            for &(bound, origin) in &*ways {
                 let from = &last.shapes[origin];
                 let length = link.length - from.exit.distance - to.entry.distance;
                 let before = last.costs[origin];
                 let halves = 0.5 * (from.duration + to.duration);
-                // No way is shorter than the whole length at the feedrate.
-                if length >= 0.0 && before + halves + length / link.limits.velocity < best {
+                if length >= 0.0 && bound < best {
                     let connection = Connection {
                         from: [from.exit.speed, from.exit.acceleration],
                         to: [to.entry.speed, to.entry.acceleration],
@@ -116,7 +124,7 @@ impl Column {
                 let short = length < OVERLAPPING * link.length;
                 if short
                     && before < best
-                    && let Some(duration) = overlap(from, &to)
+                    && let Some(duration) = overlap(from, &to, best - before)
                     && before + duration < best
                 {
                     best = before + duration;
@@ -127,4 +135,26 @@ impl Column {
             self.costs[candidate] = best;
         }
     }
+}
+
+/// No way from the middle of one corner to the middle of the next takes less: the motion between them
+/// without a limit of jerk.
+fn least_duration(from: &TurnShape, to: &TurnShape, link: &Link) -> f64 {
+    let length = (link.length - from.exit.distance - to.entry.distance).max(0.0);
+    let limits = &link.limits;
+    let (start, end) = (from.exit.speed, to.entry.speed);
+    let squares = start * start + end * end;
+    let peak = (limits.acceleration * length + 0.5 * squares)
+        .sqrt()
+        .min(limits.velocity)
+        .max(start)
+        .max(end);
+    let changing = (2.0 * peak - start - end) / limits.acceleration;
+    let changed = (peak * peak - 0.5 * squares) / limits.acceleration;
+    let cruising = if peak > 0.0 {
+        (length - changed).max(0.0) / peak
+    } else {
+        0.0
+    };
+    0.5 * (from.duration + to.duration) + changing + cruising
 }

@@ -98,13 +98,13 @@ impl Lattice {
 
     /// Takes a move and the candidates of the corner at its end, first those that can always be followed
     /// by another (at least one), then those that may lead into a dead end; `overlap` gives the duration from the
-    /// middle of one corner to the middle of the next where they can overlap.
+    /// middle of one corner to the middle of the next where they can overlap in less than it is told.
     pub(crate) fn push(
         &mut self,
         link: &Link,
         safe: &[TurnShape],
         candidates: &[TurnShape],
-        overlap: impl Fn(&TurnShape, &TurnShape) -> Option<f64>,
+        overlap: impl Fn(&TurnShape, &TurnShape, f64) -> Option<f64>,
     ) {
         let mut column = Column::empty();
         for candidate in safe {
