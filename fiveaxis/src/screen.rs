@@ -9,7 +9,7 @@ use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
 use crate::way::{AxisWay, Way};
-use toolglide_kinematics::{Axis, MOST_AXES, MachineKinematics, ToolPose, turned};
+use toolglide_kinematics::{Axis, MOST_AXES, MachineKinematics, ToolPose, angle_between, turned};
 
 /// Share of both blocks at which is measured what they add together.
 const TOGETHER: f64 = 0.5;
@@ -17,8 +17,18 @@ const TOGETHER: f64 = 0.5;
 /// What blocks add together is less than so many times what is measured.
 const RESERVE: f64 = 2.0;
 
-/// How two blocks act together on every axis: the mixed second derivative for shares of 1.
-pub(crate) type Mixed = [f64; MOST_AXES];
+/// Where blocks turn the tool together by more than this share of its angle to the pole, what they
+/// add together is not of second order any more.
+const BESIDE_POLE: f64 = 0.25;
+
+/// How two blocks act together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mixed {
+    /// The mixed second derivative of every axis for shares of 1.
+    axes: [f64; MOST_AXES],
+    /// Angle by which each block turns the tool, as a share of the angle to the pole at the corner.
+    turns: [f64; 2],
+}
 
 /// What two blocks add together, by the pose in which half of one lacks while half of the other is
 /// done.
@@ -62,7 +72,12 @@ pub(crate) fn mixed(
         let alone = (one[axis] - near[axis]) + (two[axis] - near[axis]);
         *mixed = RESERVE * (both[axis] - near[axis] - alone).abs() / TOGETHER.powi(2);
     }
-    Ok(Some(mixed))
+    let corner = after.turn.start();
+    let turns = machine.pole(&corner).map_or([0.0; 2], |pole| {
+        let beside = angle_between(&pole, &corner).max(f64::EPSILON);
+        [before, after].map(|block| block.turn.angle().abs() / beside)
+    });
+    Ok(Some(Mixed { axes: mixed, turns }))
 }
 
 /// Progress of a block over an interval.
@@ -143,17 +158,21 @@ pub(crate) fn alone(axes: &[Axis], ways: &[AxisWay], progress: Progress, half: f
     worst
 }
 
-/// The limit that two blocks come nearest to at most while they are under way together.
+/// The limit that two blocks come nearest to at most while they are under way together; none beside a
+/// pole.
 pub(crate) fn together(
     axes: &[Axis],
     ways: [&[AxisWay]; 2],
     [before, after]: [Progress; 2],
     mixed: &Mixed,
     half: f64,
-) -> Worst {
+) -> Option<Worst> {
     let mut worst = Worst::NONE;
     let (one, two) = (before.most, after.most);
     let (away_before, away_after) = (before.away[1], after.away[0]);
+    if away_before * mixed.turns[0] + away_after * mixed.turns[1] > BESIDE_POLE {
+        return None;
+    }
     // What the mixed derivative is multiplied with.
     let both = [
         one[0] * away_after + two[0] * away_before,
@@ -167,11 +186,11 @@ pub(crate) fn together(
         });
         let bends = [before.of_bends(one, 1), after.of_bends(two, 0)];
         let rest = std::array::from_fn(|order| {
-            bends[0][order] + bends[1][order] + mixed[axis] * both[order]
+            bends[0][order] + bends[1][order] + mixed.axes[axis] * both[order]
         });
         worst.raise(axis, limits, sum(slope, rest, half));
     }
-    worst
+    Some(worst)
 }
 
 /// Bounds of the three derivatives from what slopes add at both ends, and the rest.

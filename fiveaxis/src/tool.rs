@@ -103,7 +103,7 @@ impl<'a> ToolStretch<'a> {
             let ways = [self.ways[oldest].known()?, self.ways[newest].known()?];
             let mixed = self.mixed[oldest].as_ref()?;
             let progress = [progress(oldest), progress(newest)];
-            Some(together(self.axes, ways, progress, mixed, half))
+            together(self.axes, ways, progress, mixed, half)
         } else {
             None
         }

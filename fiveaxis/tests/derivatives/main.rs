@@ -250,3 +250,30 @@ fn chains_around_the_pole_keep_every_limit_by_both_derivations() {
     }
     println!("{found:?}");
 }
+
+#[test]
+fn corners_beside_the_pole_whose_blend_turns_far_around_it_keep_the_jerk_of_c() {
+    let chain = Chain {
+        rows: [
+            [9.9731, -1.9081, -0.063871, -0.104949],
+            [8.2071, -4.5617, -0.020196, -0.007428],
+            [4.2315, 6.3710, 0.057241, -0.148864],
+            [-8.5045, -3.8289, -0.035090, 0.040321],
+            [-6.0237, -0.3113, 0.0, 0.0],
+            [1.3764, -4.5683, -0.000609, -0.000551],
+            [-2.8552, 6.9271, -0.053098, 0.030817],
+            [-7.2780, 2.6977, -0.000446, 0.000534],
+        ]
+        .map(|[x, y, i, j]| leaning([x, y, 0.1 * x], [i, j]))
+        .to_vec(),
+        speed: 179.309,
+        tolerances: [0.0967079, 0.001415],
+        method: PoseMethod::DwellControlled,
+        haste: 1.0,
+    };
+    let mut found = Found::default();
+    for case in &cases() {
+        found.compare(case, &chain);
+    }
+    println!("{found:?}");
+}
