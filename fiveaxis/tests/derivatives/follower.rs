@@ -18,6 +18,9 @@ const SEEN: f64 = 1e-4;
 /// Nearer to the pole, rad, rounding tells where C is, and positions are not compared.
 const AT_POLE: f64 = 1e-6;
 
+/// A tool that leans and turns by less, rad, stays at the pole.
+const STILL: f64 = 1e-14;
+
 /// Rounding of positions of both derivations, mm and rad.
 const SAME_POSITION: f64 = 1e-9;
 
@@ -60,6 +63,15 @@ impl Follower<'_> {
         let (tip, tool) = pose_at(piece, time);
         let [i, j, _] = tool.0;
         let across = i.0[0].hypot(j.0[0]);
+        let still = i.0.iter().chain(&j.0).all(|part| part.abs() < STILL);
+        if still {
+            let found = self.case.axes_at_pole(tip, self.near[4]);
+            let found = found.map(Jet::derivatives);
+            return std::array::from_fn(|axis| {
+                let limits = limits(&self.case.axes[axis]);
+                std::array::from_fn(|order| found[axis][order + 1].abs() / limits[order])
+            });
+        }
         let [_, first, second, third] =
             std::array::from_fn(|order| i.0[order].hypot(j.0[order]) / across);
         let rate = first.max(second.sqrt()).max(third.cbrt());

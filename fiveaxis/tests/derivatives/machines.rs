@@ -69,15 +69,36 @@ impl Case {
     pub(crate) fn axes_at(&self, tip: JetVector, tool: JetVector, side: f64) -> [Jet; 5] {
         let [i, j, k] = tool.0;
         let across = (i * i + j * j).root();
-        let tilt = Jet::angle(across, k).times(side);
+        let scale = Jet::constant(side).over(across);
+        let spin = match self.form {
+            Form::TableAc => Jet::angle(i.times(side), j.times(side)),
+            Form::HeadBc => Jet::angle(j.times(side), i.times(side)),
+        };
+        let [x, y, z] = self.linear(tip, tool, [i * scale, j * scale]);
+        [x, y, z, Jet::angle(across, k).times(side), spin]
+    }
+
+    /// The axes while the tool stays at the pole and C where it is.
+    pub(crate) fn axes_at_pole(&self, tip: JetVector, spin: f64) -> [Jet; 5] {
+        let up = JetVector::constant([0.0, 0.0, 1.0]);
+        let (sine, cosine) = spin.sin_cos();
+        let lean = match self.form {
+            Form::TableAc => [sine, cosine],
+            Form::HeadBc => [cosine, sine],
+        };
+        let [x, y, z] = self.linear(tip, up, lean.map(Jet::constant));
+        [x, y, z, Jet::constant(0.0), Jet::constant(spin)]
+    }
+
+    /// The linear axes, where a tool that tilts to the positive side leans along X and Y like this.
+    fn linear(&self, tip: JetVector, tool: JetVector, [i, j]: [Jet; 2]) -> [Jet; 3] {
         let up = JetVector::constant([0.0, 0.0, 1.0]);
         let [x, y, z] = self.offset.map(Jet::constant);
         match self.form {
             // The directions of the machine axes seen from the workpiece: Z is the tool, and X is the
             // tilting axis, across the tool and the axis of the table.
             Form::TableAc => {
-                let scale = Jet::constant(side).over(across);
-                let along_x = JetVector([j * scale, -(i * scale), Jet::constant(0.0)]);
+                let along_x = JetVector([j, -i, Jet::constant(0.0)]);
                 let along_y = tool.cross(along_x);
                 let point = tip + along_x.scaled(x) + up.cross(along_x).scaled(y) + up.scaled(z);
                 let [a, b, c] = self.tilt_axis.map(Jet::constant);
@@ -85,25 +106,16 @@ impl Case {
                     a + along_x.dot(point),
                     b + along_y.dot(point),
                     c + tool.dot(point),
-                    tilt,
-                    Jet::angle(i.times(side), j.times(side)),
                 ]
             }
             // The pivot is behind the tip along the tool.
             Form::HeadBc => {
-                let scale = Jet::constant(side).over(across);
-                let forward = JetVector([i * scale, j * scale, Jet::constant(0.0)]);
+                let forward = JetVector([i, j, Jet::constant(0.0)]);
                 let sideward = up.cross(forward);
                 let reach = Jet::constant(self.pivot);
                 let slide = tip + tool.scaled(reach) - forward.scaled(x) - sideward.scaled(y);
                 let [p, q, r] = slide.0;
-                [
-                    p + x,
-                    q + y,
-                    r - reach,
-                    tilt,
-                    Jet::angle(j.times(side), i.times(side)),
-                ]
+                [p + x, q + y, r - reach]
             }
         }
     }
