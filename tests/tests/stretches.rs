@@ -100,6 +100,34 @@ fn a_curve_is_left_at_speed_before_a_sharp_corner() {
 }
 
 #[test]
+fn a_curve_is_left_only_where_its_way_is_straight_already() {
+    // What is left at speed is planned so far that the curve still bends the way where it ends.
+    let points = [
+        [0.29, -0.36],
+        [0.46, -0.55],
+        [0.73, -0.77],
+        [0.83, -0.83],
+        [1.42, -0.95],
+        [2.07, -1.02],
+        [2.76, -1.03],
+        [3.51, -0.98],
+        [5.15, -0.67],
+        [6.02, -0.41],
+        [7.83, 0.31],
+        [10.57, 1.81],
+        [11.45, 2.39],
+        [13.9, 4.31],
+        [15.14, 5.44],
+        [1.84, 0.32],
+    ];
+    let path = Course::of_lines([0.0, 0.0], &points, 1_651.0 / 60.0, 0.01).toolpath();
+    let limits = limits(&[[1_000.0, 2_000.0, 5e4]; 2]);
+    let motion = plan(&path, &Settings::new(limits)).unwrap();
+    let report = verify(&motion, &path, &limits);
+    assert!(report.passes(), "{:#?}", report.examples);
+}
+
+#[test]
 fn what_was_planned_to_a_rest_is_used_where_the_path_ends_there() {
     let mut points = Vec::new();
     curve(&mut points, [0.0, 0.0], 40.0, 8_000);

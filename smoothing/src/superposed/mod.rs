@@ -185,10 +185,12 @@ impl<const N: usize> Superposer<N> {
     /// Travels the motion no further than to where it may still become another, when there it is on its
     /// last leg and neither gains nor loses speed; the point and the speed.
     pub(crate) fn leave(&mut self) -> Option<(Vector<N>, f64)> {
+        // Of the control points before it, the first would still bend the way here.
+        let straight = self.run.controls.get(self.until.checked_sub(1)?)?;
         let control = self.run.controls.get(self.until + 1)?;
         let last = self.run.controls.last()?;
         let steady =
-            self.onward.is_some() && control.leg == last.leg && self.run.is_steady(self.until + 1);
+            self.onward.is_some() && straight.leg == last.leg && self.run.is_steady(self.until + 1);
         steady.then(|| {
             self.onward = None;
             (control.point, self.run.speed(self.until + 1))
