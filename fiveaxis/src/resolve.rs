@@ -10,7 +10,7 @@ use crate::pole::{Spin, at_pole};
 use toolglide_kinematics::numeric::SAME_ORIENTATION;
 use toolglide_kinematics::{
     AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,
-    PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath, ToolPose, ToolpathError, Vector,
+    PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath, ToolPose, ToolpathError, Vector, angle_between,
 };
 
 /// Turns moves into legs, one after the other.
@@ -133,6 +133,7 @@ impl<'m> Resolver<'m> {
             }
             _ => return Err(FiveAxisError::NoRate { index }),
         };
+        let end = self.unturned(end);
         let made = leg(PosePath::Tool {
             tip: [self.pose.tip(), end.tip()],
             turn: self.turn(index, &end)?,
@@ -152,6 +153,17 @@ impl<'m> Resolver<'m> {
         }
         self.pose = end;
         Ok(made)
+    }
+
+    /// The pose with the orientation that the tool has, where it is as good as the same: what is not turned
+    /// is not left behind for the next move to jump over.
+    fn unturned(&self, end: ToolPose) -> ToolPose {
+        let now = self.pose.orientation();
+        if angle_between(&now, &end.orientation()) < SAME_ORIENTATION {
+            ToolPose::new(end.tip(), now).unwrap_or(end)
+        } else {
+            end
+        }
     }
 
     /// The turn of the tool to a pose.

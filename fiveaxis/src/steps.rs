@@ -48,10 +48,18 @@ impl Steps {
 
     /// Filtered progress as a polynomial from `time` on, up to the next knot; `inside` is an instant
     /// before it.
+    ///
+    /// All of it is taken inside, where rounding cannot mistake the side of a knot: the rest of an
+    /// acceleration that is over would grow with the square of a long interval.
     pub(crate) fn cubic(&self, chain: &FilterChain, time: f64, inside: f64) -> CubicInTime {
-        let [position, velocity, acceleration, _] = self.state(chain, time);
-        let jerk = self.state(chain, inside)[3];
-        [position, velocity, acceleration / 2.0, jerk / 6.0]
+        let [position, velocity, acceleration, jerk] = self.state(chain, inside);
+        let back = time - inside;
+        [
+            position + (velocity + (acceleration / 2.0 + jerk / 6.0 * back) * back) * back,
+            velocity + (acceleration + jerk / 2.0 * back) * back,
+            (acceleration + jerk * back) / 2.0,
+            jerk / 6.0,
+        ]
     }
 
     /// Filtered progress and its first three derivatives at an instant.
@@ -63,5 +71,28 @@ impl Steps {
             }
         }
         state
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toolglide_kinematics::cubic_at;
+
+    #[test]
+    fn a_pulse_of_hours_goes_straight_on_between_its_ramps() {
+        let chain = FilterChain::with_time_constants(&[0.011, 0.0043]).unwrap();
+        for start in [0.0, 1_412.456, 52_345.678] {
+            let duration = 4_321.987;
+            let pulse = Steps::pulse(start, duration);
+            let (begin, end) = (start + chain.total_delay(), start + duration);
+            let cubic = pulse.cubic(&chain, begin, 0.5 * (begin + end));
+            for share in [0.0, 0.3, 1.0] {
+                let time = share * (end - begin);
+                let gone = (begin + time - start - 0.5 * chain.total_delay()) / duration;
+                let miss = (cubic_at(&cubic, time) - gone).abs();
+                assert!(miss < 1e-14, "{start} s, {share}: {miss}");
+            }
+        }
     }
 }

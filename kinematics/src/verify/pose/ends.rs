@@ -6,6 +6,7 @@
 use super::course::from_straight;
 use super::route::Waypoint;
 use super::{FOUND_SLACK, MEETING_SLACK, PoseJudge, PoseViolation};
+use crate::great_circle::angle_between;
 use crate::numeric::{JUMP_SLACK, TIME_SLACK};
 use crate::pose_leg::PosePath;
 use crate::pose_piece::PosePiece;
@@ -123,28 +124,55 @@ impl PoseJudge<'_> {
         } else {
             self.rested = 0.0;
         }
-        let rested = self.rested;
-        let near = self.follower.near;
-        let machine = self.follower.machine;
-        let pose = match piece {
+        self.moving = moving;
+        self.pose = match piece {
             PosePiece::Tool(tool) => Some(tool.end),
-            PosePiece::Axes(moved) => machine.forward(&moved.end).ok(),
+            PosePiece::Axes(moved) => self.follower.machine.forward(&moved.end).ok(),
         };
-        self.route
-            .each_end(first.saturating_sub(1), last, |leg, end| {
-                let there = match &leg.path {
-                    PosePath::Tool { tip, turn } => pose.is_some_and(|pose| {
-                        (pose.tip() - tip[1]).norm() < MEETING_SLACK
-                            && (pose.orientation() - turn.end()).norm() < MEETING_SLACK
-                    }),
-                    PosePath::Axes { end, .. } => from_straight(&near, end, end) < MEETING_SLACK,
-                    PosePath::Dwell { .. } => true,
+        self.stand(first.saturating_sub(1), last, self.rested);
+    }
+
+    /// Notes that no piece serves the legs behind those served so far and before `until`: the motion has
+    /// done nothing for them, and passes their ends where it is.
+    pub(super) fn pass(&mut self, until: u32) {
+        let first = self
+            .served
+            .map_or(0, |served| served.last.saturating_add(1));
+        let Some(last) = until.checked_sub(1).filter(|last| first <= *last) else {
+            return;
+        };
+        let time = self.time;
+        if let Some(pose) = self.pose {
+            self.route.each_end(first, last, |leg, end| {
+                let PosePath::Tool { tip, turn } = &leg.path else {
+                    return;
                 };
-                if there && moving <= REST_SLACK {
-                    end.stopped = true;
-                }
-                end.rested = end.rested.max(rested);
+                end.tip = ((pose.tip() - tip[1]).norm(), time);
+                let angle = angle_between(&pose.orientation(), &turn.end());
+                end.orientation = (angle, time);
             });
+        }
+        self.stand(first, last, 0.0);
+    }
+
+    /// Notes of the ends of legs whether the motion rests there now.
+    fn stand(&mut self, first: u32, last: u32, rested: f64) {
+        let near = self.follower.near;
+        let (pose, moving) = (self.pose, self.moving);
+        self.route.each_end(first, last, |leg, end| {
+            let there = match &leg.path {
+                PosePath::Tool { tip, turn } => pose.is_some_and(|pose| {
+                    (pose.tip() - tip[1]).norm() < MEETING_SLACK
+                        && (pose.orientation() - turn.end()).norm() < MEETING_SLACK
+                }),
+                PosePath::Axes { end, .. } => from_straight(&near, end, end) < MEETING_SLACK,
+                PosePath::Dwell { .. } => true,
+            };
+            if there && moving <= REST_SLACK {
+                end.stopped = true;
+            }
+            end.rested = end.rested.max(rested);
+        });
     }
 }
 

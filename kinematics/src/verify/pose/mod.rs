@@ -20,6 +20,7 @@ use super::report::Peak;
 use crate::axis_vector::AxisVector;
 use crate::machine::{Axis, MachineKinematics};
 use crate::piece::Serves;
+use crate::pose::ToolPose;
 use crate::pose_leg::PoseLeg;
 use crate::pose_piece::PosePiece;
 use axes::{Derivatives, Follower};
@@ -50,6 +51,9 @@ pub struct PoseJudge<'m> {
     /// State of the axes where the last piece ended.
     state: Vec<Derivatives>,
     rested: f64,
+    /// Pose where the last piece ended, and how fast it did; no pose where the machine has none.
+    pose: Option<ToolPose>,
+    moving: f64,
 }
 
 impl std::fmt::Debug for PoseJudge<'_> {
@@ -90,6 +94,8 @@ impl<'m> PoseJudge<'m> {
             time: 0.0,
             served: None,
             rested: 0.0,
+            pose: machine.forward(start).ok(),
+            moving: 0.0,
         }
     }
 
@@ -141,6 +147,7 @@ impl<'m> PoseJudge<'m> {
     /// The report, once the motion is over.
     #[must_use]
     pub fn finish(mut self) -> PoseReport {
+        self.pass(self.route.len());
         self.close(u32::MAX);
         if let Some(place) = self.route.last_unfinished() {
             self.report.add(PoseViolation::StopNotMade { place });
@@ -172,6 +179,7 @@ impl<'m> PoseJudge<'m> {
                 .add(PoseViolation::MovesOutOfOrder { first, last, time });
             return None;
         }
+        self.pass(first);
         self.served = Some(serves);
         self.close(first.saturating_sub(1));
         Some((first, last))
