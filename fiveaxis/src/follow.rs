@@ -84,7 +84,7 @@ pub(crate) fn worst(
         near: *near,
         worst: Worst::NONE,
     };
-    look.stretch([0.0, piece.duration])?;
+    look.stretch([0.0, piece.duration], LEAST_HALF)?;
     Ok(look.worst)
 }
 
@@ -99,23 +99,29 @@ struct Look<'a> {
 
 impl Look<'_> {
     fn halves(&mut self, [begin, middle, end]: [f64; 3]) -> Result<(), KinematicsError> {
-        self.stretch([begin, middle])?;
-        self.stretch([middle, end])
+        self.stretch([begin, middle], LEAST_HALF)?;
+        self.stretch([middle, end], LEAST_HALF)
     }
 
-    fn stretch(&mut self, [begin, end]: [f64; 2]) -> Result<(), KinematicsError> {
+    /// Looks at a stretch as if it lasted twice `least` at least.
+    fn stretch(&mut self, [begin, end]: [f64; 2], least: f64) -> Result<(), KinematicsError> {
         let middle = 0.5 * (begin + end);
-        let half = (0.5 * (end - begin)).max(LEAST_HALF);
+        let half = (0.5 * (end - begin)).max(least);
         let width = 0.5 * (end - begin) / half;
         let before = self.near;
         let mut values = [[0.0; NODES]; MOST_AXES];
         let mut near = before;
         for (node, at) in AT_NODES.iter().enumerate() {
-            let pose = self.piece.extended(middle + half * at);
+            let time = middle + half * at;
+            let pose = self.piece.extended(time);
             near = match self.machine.follow(&pose, &near) {
                 Ok(next) => next,
                 // Looked at too rarely, an axis beside a pole may seem to turn the other way.
                 Err(_) if end - begin > SHORTEST => return self.halves([begin, middle, end]),
+                // Beyond the ends of the piece the machine need not get anywhere.
+                Err(_) if !(0.0..=self.piece.duration).contains(&time) => {
+                    return self.stretch([begin, end], 0.5 * least);
+                }
                 Err(reason) => return Err(reason),
             };
             for (values, (now, then)) in values.iter_mut().zip(near.iter().zip(before.iter())) {

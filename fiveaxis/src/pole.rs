@@ -13,8 +13,8 @@ use toolglide_kinematics::{
     Vector, angle_between, turned,
 };
 
-/// Angle by which a block has left a pole where it is asked for the axes, rad: far enough for the
-/// rounding of orientations, near enough for every direction to be that of the start.
+/// Angle by which a block has left a pole where it is asked for the axes, rad, or at its end: far enough for
+/// the rounding of orientations, near enough for every direction to be that of the start.
 const PROBE: f64 = 1e-5;
 
 /// Axes that differ by less stand at the same place, rad: some hundred roundings of an angle.
@@ -116,7 +116,7 @@ impl Spin {
             .is_some_and(|pole| angle_between(&pole, &start) < THROUGH);
         match way {
             Ok(way) if way.known().is_some() && !at_pole => return Ok((Some(way), None)),
-            _ if block.turn.angle() < PROBE => return way.map(|way| (Some(way), None)),
+            _ if block.turn.angle() <= 0.0 => return way.map(|way| (Some(way), None)),
             _ => {}
         }
         let refused = |reason| FiveAxisError::Machine {
@@ -125,7 +125,7 @@ impl Spin {
         };
         let start = block.pose(0.0)?;
         let from = machine.follow(&start, at).map_err(refused)?;
-        let leaving = block.pose(PROBE / block.turn.angle())?;
+        let leaving = block.pose((PROBE / block.turn.angle()).min(1.0))?;
         let beyond = machine.inverse(&leaving, &from).map_err(refused)?;
         let to = machine.inverse(&start, &beyond).map_err(refused)?;
         let axes = machine.axes();

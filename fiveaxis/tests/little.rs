@@ -98,6 +98,53 @@ fn turns_too_small_to_be_made_do_not_add_up_to_a_jump() {
     }
 }
 
+#[test]
+fn the_pole_is_left_in_any_direction_however_near_to_it_the_move_ends() {
+    for lean in [1e-4, 2e-5, 9e-6, 6e-6, 5.1e-6] {
+        let rows = [
+            [0.0, 0.0, 30.0, 0.01, 0.002],
+            [0.5, 0.2, 30.0, 0.0, 0.0],
+            [0.9, 0.3, 30.5, -lean, 0.3 * lean],
+            [1.2, 0.3, 30.5, 0.0, 0.0],
+            [1.2, 0.5, 30.7, 0.01, 0.03],
+        ];
+        for name in ["table-ac", "table-bc", "head-bc"] {
+            for method in METHODS {
+                let (_, report) = planned(name, &rows, method);
+                assert!(
+                    report.passes(),
+                    "{name}, {method:?}, {lean} rad: {:#?}",
+                    report.examples
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn motion_may_begin_and_end_where_travel_does() {
+    let model = find("corexy").unwrap();
+    let machine = (model.build)(&(model.preset)()).unwrap();
+    let axes = machine.axes().to_vec();
+    let (low, _) = axes[2].travel.unwrap();
+    let rows = [
+        [50.0, 50.0, low, 0.0, 0.0, 1.0],
+        [50.014, 50.0, low + 0.055, 0.0, 0.0, 1.0],
+        [50.041, 49.994, low, 0.0, 0.0, 1.0],
+        [49.996, 49.939, low + 0.4, 0.0, 0.0, 1.0],
+    ];
+    let legs = common::legs(&rows, 250.0, 1.0, 0.002);
+    let start = common::start_of(machine.as_ref(), &rows[0]);
+    for constants in [[0.05, 0.025], [0.575, 0.287], [0.004, 0.002]] {
+        for method in METHODS {
+            let settings = settings(constants, method);
+            let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
+            let report = judge(machine.as_ref(), &axes, &legs, &planned);
+            assert!(report.passes(), "{method:?}: {:#?}", report.examples);
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

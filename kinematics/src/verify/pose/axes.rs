@@ -97,10 +97,15 @@ impl<'m> Follower<'m> {
         for node in 0..NODES {
             // From the start of the stretch to its end.
             let at = middle - half * node_at(node);
-            near = self
-                .machine
-                .follow(&piece.extended(at), &near)
-                .map_err(|reason| (at, reason))?;
+            near = match self.machine.follow(&piece.extended(at), &near) {
+                Ok(near) => near,
+                // Beyond the ends of the piece the machine need not get anywhere.
+                Err(_) if !(0.0..=piece.duration).contains(&at) => {
+                    self.near = before;
+                    return self.stretch(piece, [begin, end], 0.5 * least, take);
+                }
+                Err(reason) => return Err((at, reason)),
+            };
             for (values, position) in self.values.iter_mut().zip(near.iter()) {
                 values[node] = *position;
             }
