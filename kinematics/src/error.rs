@@ -1,5 +1,6 @@
 //! What can be wrong with limits and paths.
 
+use crate::numeric::LEAST_QUANTITY;
 use thiserror::Error;
 
 /// Why limits are refused.
@@ -14,6 +15,14 @@ pub enum LimitsError {
         /// What was given.
         value: f64,
     },
+    /// A limit is below [`LEAST_QUANTITY`].
+    #[error("{quantity} limit is {value}, but must be at least {LEAST_QUANTITY}")]
+    TooSmall {
+        /// Which limit.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
 }
 
 /// Why a move or a path is refused.
@@ -23,6 +32,14 @@ pub enum ToolpathError {
     /// A quantity must be positive and finite.
     #[error("{quantity} is {value}, but must be positive and finite")]
     NotPositive {
+        /// Which quantity.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A quantity is below [`LEAST_QUANTITY`].
+    #[error("{quantity} is {value}, but must be at least {LEAST_QUANTITY}")]
+    TooSmall {
         /// Which quantity.
         quantity: &'static str,
         /// What was given.

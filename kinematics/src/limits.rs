@@ -4,6 +4,7 @@
 //! and 3.2. Not here: travel, which belongs to a machine.
 
 use crate::error::LimitsError;
+use crate::numeric::LEAST_QUANTITY;
 use crate::vector::Vector;
 
 /// The limits of one axis.
@@ -18,7 +19,8 @@ impl AxisLimits {
     /// Limits of velocity, acceleration and jerk, each positive and finite.
     ///
     /// # Errors
-    /// [`LimitsError::NotPositive`] names the first quantity that is not.
+    /// [`LimitsError::NotPositive`] names the first quantity that is not, [`LimitsError::TooSmall`] the first
+    /// one below [`LEAST_QUANTITY`].
     ///
     /// # Examples
     /// ```
@@ -34,6 +36,9 @@ impl AxisLimits {
         ] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(LimitsError::NotPositive { quantity, value });
+            }
+            if value < LEAST_QUANTITY {
+                return Err(LimitsError::TooSmall { quantity, value });
             }
         }
         Ok(Self {

@@ -75,6 +75,10 @@ pub const JUDGE_PARTS: u32 = 50_000;
 /// finite.
 pub const LARGEST_MAGNITUDE: f64 = 1e30;
 
+/// Limits, feedrates and tolerances below this are refused, mm, rad and their quotients with s: no axis is so
+/// slow and no encoder so fine, and motion within them would outlast the digits of its time.
+pub const LEAST_QUANTITY: f64 = 1e-9;
+
 /// How many moves ahead the judge of set-points looks at most for a motion that has left its path:
 /// enough for moves of a hundredth of the tolerance, and a millisecond at worst.
 pub const LOOK_AHEAD_MOVES: u32 = 1024;

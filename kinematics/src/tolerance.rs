@@ -4,27 +4,32 @@
 //! is that of section 5.3.
 
 use crate::error::ToolpathError;
-use crate::numeric::LEAST_SHARE;
+use crate::numeric::{LEAST_QUANTITY, LEAST_SHARE};
 
 /// Corner tolerance: every point of the motion lies within it of the path, and the motion passes
 /// within it of every corner. Positive and finite, mm.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Tolerance(f64);
 
+/// A quantity that is finite, positive, and no less than anything can be.
+fn sized(quantity: &'static str, value: f64) -> Result<f64, ToolpathError> {
+    if !(value > 0.0 && value.is_finite()) {
+        return Err(ToolpathError::NotPositive { quantity, value });
+    }
+    if value < LEAST_QUANTITY {
+        return Err(ToolpathError::TooSmall { quantity, value });
+    }
+    Ok(value)
+}
+
 impl Tolerance {
     /// A tolerance in mm.
     ///
     /// # Errors
-    /// [`ToolpathError::NotPositive`] unless it is positive and finite.
+    /// [`ToolpathError::NotPositive`] unless it is positive and finite, [`ToolpathError::TooSmall`] below
+    /// [`LEAST_QUANTITY`].
     pub fn new(length: f64) -> Result<Self, ToolpathError> {
-        if length > 0.0 && length.is_finite() {
-            Ok(Self(length))
-        } else {
-            Err(ToolpathError::NotPositive {
-                quantity: "tolerance",
-                value: length,
-            })
-        }
+        sized("tolerance", length).map(Self)
     }
 
     /// The tolerance in mm.
@@ -58,16 +63,10 @@ impl Feedrate {
     /// A feedrate in mm/s.
     ///
     /// # Errors
-    /// [`ToolpathError::NotPositive`] unless it is positive and finite.
+    /// [`ToolpathError::NotPositive`] unless it is positive and finite, [`ToolpathError::TooSmall`] below
+    /// [`LEAST_QUANTITY`].
     pub fn new(speed: f64) -> Result<Self, ToolpathError> {
-        if speed > 0.0 && speed.is_finite() {
-            Ok(Self(speed))
-        } else {
-            Err(ToolpathError::NotPositive {
-                quantity: "feedrate",
-                value: speed,
-            })
-        }
+        sized("feedrate", speed).map(Self)
     }
 
     /// The speed in mm/s; infinite for a rapid.
@@ -93,21 +92,57 @@ impl OrientationTolerance {
     /// A tolerance in rad.
     ///
     /// # Errors
-    /// [`ToolpathError::NotPositive`] unless it is positive and below a half turn.
+    /// [`ToolpathError::NotPositive`] unless it is positive and below a half turn,
+    /// [`ToolpathError::TooSmall`] below [`LEAST_QUANTITY`].
     pub fn new(angle: f64) -> Result<Self, ToolpathError> {
-        if angle > 0.0 && angle < std::f64::consts::PI {
-            Ok(Self(angle))
-        } else {
-            Err(ToolpathError::NotPositive {
-                quantity: "orientation tolerance",
-                value: angle,
-            })
+        let (quantity, value) = ("orientation tolerance", angle);
+        if angle >= std::f64::consts::PI {
+            return Err(ToolpathError::NotPositive { quantity, value });
         }
+        sized(quantity, value).map(Self)
     }
 
     /// The tolerance in rad.
     #[must_use]
     pub fn angle(self) -> f64 {
         self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_or_none_that_can_be_kept_is_refused_with_its_value() {
+        for value in [0.0, -0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            for refused in [
+                Tolerance::new(value).map(|_| ()),
+                Feedrate::new(value).map(|_| ()),
+                OrientationTolerance::new(value).map(|_| ()),
+            ] {
+                assert!(
+                    matches!(refused, Err(ToolpathError::NotPositive { .. })),
+                    "{value}: {refused:?}"
+                );
+            }
+        }
+        for value in [f64::MIN_POSITIVE, 1e-300, 9e-10] {
+            for refused in [
+                Tolerance::new(value).map(|_| ()),
+                Feedrate::new(value).map(|_| ()),
+                OrientationTolerance::new(value).map(|_| ()),
+            ] {
+                assert!(
+                    matches!(refused, Err(ToolpathError::TooSmall { .. })),
+                    "{value}: {refused:?}"
+                );
+            }
+            assert!(
+                crate::AxisLimits::new(1.0, value, 1.0).is_err(),
+                "limit of {value}"
+            );
+        }
+        assert!(Tolerance::new(LEAST_QUANTITY).is_ok(), "the least");
     }
 }

@@ -9,7 +9,7 @@ use crate::reason::Reason;
 use crate::settings::Settings;
 use crate::tools::LARGEST_TOOL;
 use crate::units::Units;
-use toolglide_kinematics::Tolerance;
+use toolglide_kinematics::{Tolerance, ToolpathError};
 
 /// A number as near as this to a whole one is whole: it may come from an expression.
 const WHOLE: f64 = 1e-4;
@@ -118,8 +118,10 @@ impl Modal {
             let at = |reason| Fault::new(block.span(b'P'), reason);
             let length = self.units.bounded_length('P', value).map_err(at)?;
             let quantity = "tolerance";
-            self.tolerance =
-                Tolerance::new(length).map_err(|_| at(Reason::NotPositive { quantity, value }))?;
+            self.tolerance = Tolerance::new(length).map_err(|reason| match reason {
+                ToolpathError::TooSmall { .. } => at(Reason::Path(reason)),
+                _ => at(Reason::NotPositive { quantity, value }),
+            })?;
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ use crate::statement_error::StatementError;
 use std::sync::Arc;
 use thiserror::Error;
 use toolglide_kinematics::ToolpathError;
+use toolglide_kinematics::numeric::LEAST_QUANTITY;
 
 /// Why a word, a line or a file is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -222,7 +223,9 @@ pub enum Reason {
     #[error("F is missing: with G93 every feed move needs its own")]
     NoInverseTime,
     /// A feedrate that cannot be followed.
-    #[error("feedrate comes to {speed} mm/s, but must be positive and finite")]
+    #[error(
+        "feedrate comes to {speed} mm/s, but must be finite and at least {LEAST_QUANTITY} mm/s"
+    )]
     Feedrate {
         /// The feedrate, mm/s.
         speed: f64,

@@ -18,7 +18,7 @@ use crate::sinumerik_reader::Reader;
 use crate::sinumerik_words::{Known, known};
 use crate::tools::ToolTable;
 use std::collections::BTreeMap;
-use toolglide_kinematics::Tolerance;
+use toolglide_kinematics::{Tolerance, ToolpathError};
 
 /// Tools whose names are remembered.
 const MOST_TOOLS: usize = 1000;
@@ -287,8 +287,13 @@ impl Line<'_> {
         if !state.settings.override_tolerance {
             let quantity = "tolerance";
             let length = state.modal.units.length(value);
-            state.modal.tolerance = Tolerance::new(length)
-                .map_err(|_| Fault::new(span, Reason::NotPositive { quantity, value }))?;
+            state.modal.tolerance = Tolerance::new(length).map_err(|reason| {
+                let reason = match reason {
+                    ToolpathError::TooSmall { .. } => Reason::Path(reason),
+                    _ => Reason::NotPositive { quantity, value },
+                };
+                Fault::new(span, reason)
+            })?;
         }
         Ok(())
     }

@@ -328,6 +328,10 @@ fn feed_moves_need_a_feedrate() {
     let (_, column, _, reason) = refusal(&vast);
     assert_eq!(column, 7, "vast");
     assert!(matches!(reason, Reason::Feedrate { .. }), "{reason:?}");
+    let none = format!("G1 X1 F0.{}1", "0".repeat(299));
+    let (_, column, _, reason) = refusal(&none);
+    assert_eq!(column, 7, "next to nothing");
+    assert!(matches!(reason, Reason::Feedrate { .. }), "{reason:?}");
 }
 
 #[test]
