@@ -2,7 +2,7 @@
 //!
 //! Source: none; many pulses share one arc. Not here: how that is found, see the bend.
 
-use crate::bend::{Bend, Pace};
+use crate::bend::Bend;
 use crate::cubic::CubicChain;
 use std::collections::VecDeque;
 use toolglide_kinematics::Vector;
@@ -11,7 +11,8 @@ use toolglide_kinematics::Vector;
 struct Entry<const N: usize> {
     bend: Bend<N>,
     feedrate: f64,
-    pace: Pace,
+    /// Largest feedrate behind the chain in use.
+    pace: f64,
 }
 
 /// Arcs by number.
@@ -68,7 +69,7 @@ impl<const N: usize> Arcs<N> {
     }
 
     /// How fast an arc may be followed.
-    pub(crate) fn of(&self, number: u32) -> Pace {
+    pub(crate) fn of(&self, number: u32) -> f64 {
         let index = usize::try_from(number - self.first).unwrap_or(0);
         self.entries[index].pace
     }

@@ -29,9 +29,13 @@ pub(crate) struct Schedule {
     end: Vec<f64>,
     /// Progress of the pulses in the window of the last corner asked for.
     progress: Vec<f64>,
+    /// Shares of that window that the pulses have.
+    shares: Vec<f64>,
     /// What each corner of that window contributes, and the index of the first.
     contributions: Vec<f64>,
     first: usize,
+    /// How fast the mean of that window goes on.
+    rate: f64,
 }
 
 impl Schedule {
@@ -41,8 +45,10 @@ impl Schedule {
             begin: room(),
             end: room(),
             progress: room(),
+            shares: room(),
             contributions: room(),
             first: 0,
+            rate: 0.0,
         }
     }
 
@@ -59,16 +65,37 @@ impl Schedule {
         (self.first..).zip(self.contributions.iter().copied())
     }
 
-    /// Share of the last bound that real corners have, as opposed to chords of an arc.
-    pub(crate) fn share_of_corners<const N: usize>(&self, pulses: &[Pulse<N>]) -> f64 {
-        let (mut corners, mut all) = (0.0, 0.0);
-        for (corner, contribution) in self.contributions() {
-            all += contribution;
-            if !pulses[corner].smooth {
-                corners += contribution;
-            }
+    /// What the turns inside an arc contributed to the bound asked for last.
+    pub(crate) fn contribution_of<const N: usize>(&self, pulses: &[Pulse<N>], arc: u32) -> f64 {
+        self.contributions()
+            .filter(|&(corner, _)| pulses[corner].smooth && pulses[corner].arc == Some(arc))
+            .map(|(_, contribution)| contribution)
+            .sum()
+    }
+
+    /// How fast the mean of the window of the bound asked for last goes on.
+    pub(crate) fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Whether all of the window of the bound asked for last lies on an arc.
+    pub(crate) fn lies_on<const N: usize>(&self, pulses: &[Pulse<N>], arc: u32) -> bool {
+        let mut window = pulses[self.first..].iter().zip(&self.shares);
+        window.all(|(pulse, _)| pulse.arc == Some(arc))
+    }
+
+    /// How much the path turns where the window of the bound asked for last is, per length, 1/mm; turns
+    /// count up to `most`.
+    pub(crate) fn turning<const N: usize>(&self, pulses: &[Pulse<N>], most: f64) -> f64 {
+        let mut turning = 0.0;
+        let mut before = 0.0;
+        let mut turn = 0.0;
+        for (pulse, share) in pulses[self.first..].iter().zip(&self.shares) {
+            let density = share / pulse.length;
+            turning += turn * 0.5 * (before + density);
+            (before, turn) = (density, pulse.turn.min(most));
         }
-        if all > 0.0 { corners / all } else { 0.0 }
+        turning
     }
 
     /// Times the pulses; those before `fixed` keep the gaps that were handed out.
@@ -141,32 +168,10 @@ impl Schedule {
         chain: &CubicChain,
         corner: usize,
     ) -> f64 {
-        let total = chain.total();
-        let (mut low, mut high) = (self.end[corner], self.begin[corner + 1] + total);
+        let (mut low, mut high) = (self.end[corner], self.begin[corner + 1] + chain.total());
         let mut time = 0.5 * (low + high);
         for _ in 0..STEPS {
-            let (mut excess, mut rate) = (0.0, 0.0);
-            for index in (0..=corner).rev() {
-                let after = time - self.end[index];
-                if after >= total {
-                    break;
-                }
-                let since = time - self.begin[index];
-                let feed = pulses[index].feed;
-                excess +=
-                    feed * (chain.position(since) - chain.position(after)) - pulses[index].length;
-                rate += feed * (chain.velocity(since) - chain.velocity(after));
-            }
-            for (index, pulse) in pulses.iter().enumerate().skip(corner + 1) {
-                let since = time - self.begin[index];
-                if since <= 0.0 {
-                    break;
-                }
-                let after = time - self.end[index];
-                let feed = pulse.feed;
-                excess += feed * (chain.position(since) - chain.position(after));
-                rate += feed * (chain.velocity(since) - chain.velocity(after));
-            }
+            let (excess, rate) = self.look(pulses, chain, corner, time);
             if excess > 0.0 {
                 high = time;
             } else {
@@ -178,41 +183,64 @@ impl Schedule {
             }
             let step = (next - time).abs();
             time = next;
-            if step <= INSTANT_PRECISION * total {
+            if step <= INSTANT_PRECISION * chain.total() {
                 break;
             }
         }
-        self.sum(pulses, chain, corner, time)
+        self.sum(pulses)
     }
 
-    fn sum<const N: usize>(
+    /// Progress of the pulses in the window at a time: by how much its mean is beyond the corner, and
+    /// how fast it grows.
+    fn look<const N: usize>(
         &mut self,
         pulses: &[Pulse<N>],
         chain: &CubicChain,
         corner: usize,
         time: f64,
-    ) -> f64 {
-        let total = chain.total();
+    ) -> (f64, f64) {
         let mut first = corner;
-        while first > 0 && time - self.end[first - 1] < total {
+        while first > 0 && time - self.end[first - 1] < chain.total() {
             first -= 1;
         }
         self.first = first;
         self.progress.clear();
+        self.shares.clear();
+        let (mut excess, mut rate) = (0.0, 0.0);
+        let mut commanded = f64::NEG_INFINITY;
+        let mut since = (0.0, 0.0);
         for (index, pulse) in pulses.iter().enumerate().skip(first) {
-            let since = time - self.begin[index];
-            if since <= 0.0 {
+            let begin = self.begin[index];
+            if time <= begin {
                 break;
             }
-            let after = time - self.end[index];
-            self.progress
-                .push(pulse.feed * (chain.position(since) - chain.position(after)));
+            if begin > commanded {
+                since = chain.response(time - begin);
+            }
+            commanded = self.end[index];
+            let after = chain.response(time - commanded);
+            let progress = pulse.feed * (since.0 - after.0);
+            self.progress.push(progress);
+            excess += progress;
+            if index <= corner {
+                excess -= pulse.length;
+            }
+            let share = since.1 - after.1;
+            self.shares.push(share);
+            rate += pulse.feed * share;
+            since = after;
         }
+        self.rate = rate;
+        (excess, rate)
+    }
+
+    /// The bound at the instant looked at last.
+    fn sum<const N: usize>(&mut self, pulses: &[Pulse<N>]) -> f64 {
         let mut gained: f64 = self.progress.iter().sum();
         let mut missing = 0.0;
         let mut bound = 0.0;
         self.contributions.clear();
-        for (pulse, progress) in pulses[first..].iter().zip(&self.progress) {
+        for (pulse, progress) in pulses[self.first..].iter().zip(&self.progress) {
             gained -= progress;
             missing += pulse.length - progress;
             let contribution = pulse.turn * gained.min(missing).max(0.0);

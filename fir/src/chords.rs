@@ -5,7 +5,7 @@
 //! chords, see a circle of the right radius. The ends are exact. Not here: feedrates.
 
 use std::f64::consts::FRAC_PI_4;
-use toolglide_kinematics::{Arc, Vector};
+use toolglide_kinematics::{Arc, Vector, largest_multiple};
 
 /// Sagitta of a chord as a share of the tolerance: some seventeen chords are in the window of the
 /// filters where the tolerance limits the feedrate.
@@ -17,6 +17,9 @@ pub(crate) struct Chords<const N: usize> {
     arc: Arc<N>,
     count: f64,
     next: f64,
+    angle: f64,
+    curvature: f64,
+    sagitta: f64,
     outward: f64,
 }
 
@@ -36,9 +39,9 @@ pub(crate) fn bulge_of<const N: usize>(arc: &Arc<N>) -> f64 {
 impl<const N: usize> Chords<N> {
     pub(crate) fn new(arc: Arc<N>, tolerance: f64) -> Self {
         let (start_radius, end_radius) = arc.radii();
-        let sweep = arc.sweep().abs();
-        let curvature = bending(&arc);
-        let angle = (8.0 * SAGITTA_SHARE * tolerance / curvature)
+        let (sweep, radius) = (arc.sweep().abs(), start_radius.min(end_radius));
+        let bending = bending(&arc);
+        let angle = (8.0 * SAGITTA_SHARE * tolerance / bending)
             .sqrt()
             .min(FRAC_PI_4);
         let count = (sweep / angle).ceil().max(1.0);
@@ -47,13 +50,26 @@ impl<const N: usize> Chords<N> {
             arc,
             count,
             next: 1.0,
-            outward: angle * angle * start_radius.min(end_radius) / 12.0,
+            angle,
+            curvature: radius * (sweep / arc.length()).powi(2),
+            sagitta: 0.125 * angle * angle * bending,
+            outward: angle * angle * radius / 12.0,
         }
     }
 
-    /// Angle of one chord, rad.
-    pub(crate) fn angle(&self) -> f64 {
-        self.arc.sweep().abs() / self.count
+    /// Turn `|t2 - t1|` between two of them.
+    pub(crate) fn turn(&self) -> f64 {
+        2.0 * (0.5 * self.angle).sin()
+    }
+
+    /// Turn of the arc per length, 1/mm.
+    pub(crate) fn curvature(&self) -> f64 {
+        self.curvature
+    }
+
+    /// How far the arc bends away from a chord.
+    pub(crate) fn sagitta(&self) -> f64 {
+        self.sagitta
     }
 
     /// How far the vertices lie outside the arc.
@@ -61,27 +77,42 @@ impl<const N: usize> Chords<N> {
         self.outward
     }
 
-    /// Length of the longest chord.
-    pub(crate) fn longest(&self) -> f64 {
-        (self.vertex(2.0_f64.min(self.count)) - self.vertex(1.0))
-            .norm()
-            .max((self.vertex(1.0) - self.arc.start()).norm())
+    /// Length of the shortest chord, of the first two.
+    pub(crate) fn shortest(&self) -> f64 {
+        let first = self.vertex(1.0);
+        let mut length = (first - self.arc.start()).norm();
+        if self.count > 1.0 {
+            length = length.min((self.vertex(2.0) - first).norm());
+        }
+        length
     }
 
     /// The vertex of an index from 0 to the count.
     fn vertex(&self, index: f64) -> Vector<N> {
-        let share = index / self.count;
-        let point = self.arc.point(share);
+        let (arc, share) = (&self.arc, index / self.count);
         if share <= 0.0 || share >= 1.0 {
-            return point;
+            return arc.point(share);
         }
-        let (radial, lateral) = self.arc.frame();
-        let (sine, cosine) = (share * self.arc.sweep()).sin_cos();
-        point + (radial * cosine + lateral * sine) * self.outward
+        let ((radial, lateral), (start, end)) = (arc.frame(), arc.radii());
+        let (sine, cosine) = (share * arc.sweep()).sin_cos();
+        let radius = start + share * (end - start) + self.outward;
+        arc.center() + (radial * cosine + lateral * sine) * radius + arc.lift() * share
+    }
+
+    /// The feedrate that velocities of the axes leave on every chord.
+    pub(crate) fn largest_feed(&self, velocity: &Vector<N>) -> f64 {
+        let mut from = self.arc.start();
+        let mut feed = f64::INFINITY;
+        for vertex in self.vertices() {
+            let span = vertex - from;
+            feed = feed.min(largest_multiple(&span, velocity) * span.norm());
+            from = vertex;
+        }
+        feed
     }
 
     /// All vertices after the start.
-    pub(crate) fn vertices(&self) -> impl Iterator<Item = Vector<N>> {
+    fn vertices(&self) -> impl Iterator<Item = Vector<N>> {
         let mut rest = *self;
         std::iter::from_fn(move || rest.next().map(|(vertex, _)| vertex))
     }

@@ -7,8 +7,8 @@
 use crate::chain::FilterChain;
 use crate::error::FirError;
 
-/// Most halvings of the bracket: the last of them is below the rounding.
-const HALVINGS: u32 = 60;
+/// Most steps towards the root; some ten are enough.
+const STEPS: u32 = 60;
 
 /// Relative width at which the bracket is narrow enough: its lower end keeps the tolerance.
 const NARROW: f64 = 1e-11;
@@ -52,23 +52,39 @@ pub fn largest_circle_feed(
 }
 
 /// The angular velocity at which a gain has fallen by a share, between one that is slow enough and
-/// the first notch.
+/// the first notch: never above it.
 pub(crate) fn angular_velocity(
     gain: impl Fn(f64) -> f64,
     share: f64,
     slow_enough: f64,
     notch: f64,
 ) -> f64 {
+    let missing = |w: f64| 1.0 - gain(w) - share;
     let (mut low, mut high) = (slow_enough.min(notch), notch);
-    for _ in 0..HALVINGS {
-        if high - low <= NARROW * high {
+    let (mut below, mut above) = (missing(low), missing(high));
+    if above <= 0.0 {
+        return high;
+    }
+    // False position; an end that stays counts half the next time, so that both ends close in.
+    let mut stayed = 0_i32;
+    for _ in 0..STEPS {
+        if high - low <= NARROW * high || below >= 0.0 {
             break;
         }
-        let middle = 0.5 * (low + high);
-        if 1.0 - gain(middle) > share {
-            high = middle;
+        let middle = (low + (high - low) * (below / (below - above))).clamp(low, high);
+        let value = missing(middle);
+        if value > 0.0 {
+            (high, above) = (middle, value);
+            if stayed < 0 {
+                below *= 0.5;
+            }
+            stayed = -1;
         } else {
-            low = middle;
+            (low, below) = (middle, value);
+            if stayed > 0 {
+                above *= 0.5;
+            }
+            stayed = 1;
         }
     }
     low

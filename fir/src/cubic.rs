@@ -161,6 +161,11 @@ impl CubicChain {
         self.over_comb(time, |two, since| two.velocity_of_two(since))
     }
 
+    /// Position and velocity after a unit step of velocity.
+    pub(crate) fn response(&self, time: f64) -> (f64, f64) {
+        (self.position(time), self.velocity(time))
+    }
+
     /// Acceleration after a unit step of velocity.
     pub(crate) fn acceleration(&self, time: f64) -> f64 {
         self.over_comb(time, |two, since| two.acceleration_of_two(since))

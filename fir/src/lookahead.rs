@@ -13,6 +13,7 @@ mod corners;
 mod correction;
 mod in_step;
 mod ramp;
+mod room;
 mod stops;
 
 use crate::arcs::Arcs;
@@ -24,8 +25,11 @@ use crate::pulse::Pulse;
 use crate::settings::{designed_for, largest_change};
 use toolglide_kinematics::{Limits, Vector};
 
-/// Pulses that wait before the first half of them is handed out.
+/// Pulses that wait before the first of them are handed out.
 const PENDING: usize = 128;
+
+/// Pulses that are handed out then: the fewer wait for the next time, the fewer are planned twice.
+const HANDED_OUT: usize = 96;
 
 /// Pulses that pending ones are cut into at most.
 const CUT: usize = 2048;
@@ -49,6 +53,8 @@ pub(crate) struct LookAhead<const N: usize> {
     arcs: Arcs<N>,
     /// What waited before chains were tried.
     waiting: Vec<Pulse<N>>,
+    /// What the best chain makes of it.
+    best: Vec<Pulse<N>>,
     /// What the pulses were before a trial.
     kept: Vec<Pulse<N>>,
     /// The pulses while they are cut.
@@ -89,6 +95,7 @@ impl<const N: usize> LookAhead<N> {
             chain,
             arcs: Arcs::with_capacity(CONTEXT + PENDING),
             waiting: Vec::with_capacity(capacity),
+            best: Vec::with_capacity(capacity),
             pulses: Vec::with_capacity(capacity),
             kept: Vec::with_capacity(capacity),
             cuts: Vec::with_capacity(capacity),
@@ -124,18 +131,23 @@ impl<const N: usize> LookAhead<N> {
         }
         self.pulses.push(pulse);
         self.legs += 1;
-        self.limit(self.pulses.len() - 1);
+        if !self.chooses() {
+            self.limit(self.pulses.len() - 1);
+        }
         if self.legs >= PENDING {
             self.decide(out);
-            let mut half = self.fixed;
-            for _ in 0..PENDING / 2 {
-                while self.pulses[half].part {
-                    half += 1;
+        }
+        // Fewer wait where the motion came to rest before them.
+        if self.legs >= PENDING {
+            let mut until = self.fixed;
+            for _ in 0..HANDED_OUT {
+                while self.pulses[until].part {
+                    until += 1;
                 }
-                half += 1;
+                until += 1;
             }
-            self.legs -= PENDING / 2;
-            self.hand_out(half, out);
+            self.legs -= HANDED_OUT;
+            self.hand_out(until, out);
             if self.fixed > CONTEXT {
                 self.rest(out);
             }
@@ -149,6 +161,8 @@ impl<const N: usize> LookAhead<N> {
         }
         if self.pulses.len() > self.fixed {
             self.decide(out);
+        }
+        if self.pulses.len() > self.fixed {
             self.hand_out(self.pulses.len(), out);
         }
         self.begin_again(out);

@@ -78,7 +78,13 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Takes the next vertex; gives the leg that it completes.
-    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Leg<N>> {
+    pub(crate) fn push(&mut self, mut vertex: Vertex<N>) -> Option<Leg<N>> {
+        if let Some(last) = self.run.last()
+            && vertex.point == last.point
+        {
+            // A feedrate over no length slows nothing.
+            vertex.feedrate = last.feedrate;
+        }
         let mut leg = None;
         match self.deviation_with(&vertex) {
             Some(deviation) => self.deviation = deviation,

@@ -154,12 +154,14 @@ impl<const N: usize> FirInterpolation<N> {
 
     fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, serves: Serves) {
         self.flush();
-        let feedrate = step.feedrate().speed();
+        let mut feedrate = step.feedrate().speed();
         self.choose(feedrate);
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
         let bend = Bend::new(arc, &chords, tolerance);
-        let feedrate = feedrate.min(bend.largest_feed(self.limits.velocity()));
+        if feedrate > self.limits.velocity().min() {
+            feedrate = feedrate.min(chords.largest_feed(self.limits.velocity()));
+        }
         self.arc = Some(ArcUnderWay {
             chords,
             number: self.look.begin_arc(bend, feedrate),
@@ -177,12 +179,8 @@ impl<const N: usize> FirInterpolation<N> {
         };
         match under_way.chords.next() {
             Some((vertex, more)) => {
-                let bulge = if more {
-                    under_way.chords.outward()
-                } else {
-                    0.0
-                };
                 let ArcUnderWay {
+                    chords,
                     number,
                     feedrate,
                     tolerance,
@@ -200,7 +198,9 @@ impl<const N: usize> FirInterpolation<N> {
                 let mut pulse = Pulse::between((from, vertex), feedrate, tolerance, serves);
                 pulse.smooth = more;
                 pulse.arc = Some(number);
-                pulse.bulge = bulge;
+                pulse.sagitta = chords.sagitta();
+                pulse.curvature = chords.curvature();
+                pulse.outward = if more { chords.outward() } else { 0.0 };
                 self.add(pulse);
             }
             None => {

@@ -24,10 +24,12 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) tolerance: f64,
     /// Whether the next pulse goes on along the same arc, so that there is no corner in between.
     pub(crate) smooth: bool,
-    /// What the bound comes to in the middle of an arc; a longer bound is allowed nowhere else.
-    pub(crate) steady: f64,
-    /// How far its end lies outside the arc that it is part of.
-    pub(crate) bulge: f64,
+    /// How far the arc that it is a chord of bends away from it.
+    pub(crate) sagitta: f64,
+    /// Turn `|t2 - t1|` of that arc per length, 1/mm.
+    pub(crate) curvature: f64,
+    /// How far its end lies outside that arc.
+    pub(crate) outward: f64,
     pub(crate) serves: Serves,
     /// Feedrate that is commanded.
     pub(crate) feed: f64,
@@ -67,8 +69,9 @@ impl<const N: usize> Pulse<N> {
             part: false,
             tolerance,
             smooth: false,
-            steady: 0.0,
-            bulge: 0.0,
+            sagitta: 0.0,
+            curvature: 0.0,
+            outward: 0.0,
             serves,
             feed: feedrate,
             gap: 0.0,

@@ -91,7 +91,12 @@ impl<const N: usize> Sweep<N> {
                 self.restart(at);
                 continue;
             }
-            match self.commands.pop_front()? {
+            let Some(command) = self.commands.pop_front() else {
+                // What comes next lies where it was just read, not behind all that ever came.
+                self.commands.clear();
+                return None;
+            };
+            match command {
                 Command::Pulse(pulse) => self.begin(&pulse),
                 Command::Rest => {
                     if self.active.is_empty() {
@@ -156,17 +161,24 @@ impl<const N: usize> Sweep<N> {
     /// Goes on to a knot; gives the piece up to it unless it has no length.
     fn advance(&mut self, knot: f64) -> Option<Piece<N>> {
         let duration = knot - self.time;
-        let piece = if duration > SAME_INSTANT {
-            let serves = self.serves();
-            let start = self.state;
-            self.time = knot;
-            self.integrate(duration);
-            self.expire();
-            self.since_anchor += 1;
-            Some((start, serves))
-        } else {
-            None
-        };
+        if duration <= SAME_INSTANT {
+            self.arrive(knot);
+            return None;
+        }
+        let serves = self.serves();
+        let start = self.state;
+        self.time = knot;
+        self.integrate(duration);
+        self.expire();
+        self.since_anchor += 1;
+        self.arrive(knot);
+        let end = self.state.position;
+        self.set_back_clock();
+        Some(Piece::new(&start, duration, end, serves))
+    }
+
+    /// Changes the jerk at a knot.
+    fn arrive(&mut self, knot: f64) {
         let (jerk, early) = self.taps.arrive(knot);
         self.state.acceleration -= early;
         self.state.jerk = jerk;
@@ -178,10 +190,6 @@ impl<const N: usize> Sweep<N> {
         {
             self.anchor();
         }
-        let (start, serves) = piece?;
-        let end = self.state.position;
-        self.set_back_clock();
-        Some(Piece::new(&start, duration, end, serves))
     }
 
     /// Rests at the end of the last pulse, exactly.

@@ -25,6 +25,8 @@ struct Tap {
     weight: f64,
     /// Index of the next step to arrive.
     next: usize,
+    /// When it arrives; never while it is not known.
+    due: f64,
 }
 
 /// All delays of a chain, and the steps that have not passed all of them.
@@ -32,6 +34,8 @@ struct Tap {
 pub(crate) struct Taps<const N: usize> {
     taps: Vec<Tap>,
     steps: VecDeque<Step<N>>,
+    /// When the next step arrives at a tap; never while none is known.
+    due: f64,
 }
 
 impl<const N: usize> Taps<N> {
@@ -40,6 +44,7 @@ impl<const N: usize> Taps<N> {
         Self {
             taps: Vec::with_capacity(4 * chain.comb().len()),
             steps: VecDeque::with_capacity(capacity),
+            due: f64::INFINITY,
         }
     }
 
@@ -51,12 +56,14 @@ impl<const N: usize> Taps<N> {
         let (long, short) = (chain.long(), chain.short());
         let product = long * short;
         self.taps.clear();
+        self.due = f64::INFINITY;
         for tooth in chain.comb() {
             for (delay, sign) in [(0.0, 1.0), (short, -1.0), (long, -1.0), (long + short, 1.0)] {
                 self.taps.push(Tap {
                     delay: tooth.delay + delay,
                     weight: sign * tooth.weight / product,
                     next: 1,
+                    due: f64::INFINITY,
                 });
             }
         }
@@ -64,16 +71,19 @@ impl<const N: usize> Taps<N> {
 
     /// The commanded velocity changes.
     pub(crate) fn push(&mut self, time: f64, velocity: Vector<N>) {
+        let index = self.steps.len();
         self.steps.push_back(Step { time, velocity });
+        for tap in &mut self.taps {
+            if tap.next == index {
+                tap.due = time + tap.delay;
+                self.due = self.due.min(tap.due);
+            }
+        }
     }
 
     /// When the jerk changes next, as far as is known.
     pub(crate) fn next_knot(&self) -> f64 {
-        let arrivals = self.taps.iter().filter_map(|tap| {
-            let step = self.steps.get(tap.next)?;
-            Some(step.time + tap.delay)
-        });
-        arrivals.fold(f64::INFINITY, f64::min)
+        self.due
     }
 
     /// Lets the steps that are due arrive at their taps; gives the jerk, and the acceleration that comes
@@ -82,16 +92,18 @@ impl<const N: usize> Taps<N> {
         let mut jerk = Vector::zeros();
         let mut ahead = Vector::zeros();
         let mut oldest = usize::MAX;
+        self.due = f64::INFINITY;
         for tap in &mut self.taps {
-            while let Some(step) = self.steps.get(tap.next)
-                && step.time + tap.delay <= knot + SAME_INSTANT
-            {
+            while tap.due <= knot + SAME_INSTANT {
                 // Instants that are one are not quite the same: what the jerk does too early.
-                let early = step.time + tap.delay - knot;
-                let change = step.velocity - self.steps[tap.next - 1].velocity;
+                let early = tap.due - knot;
+                let change = self.steps[tap.next].velocity - self.steps[tap.next - 1].velocity;
                 ahead += change * (tap.weight * early);
                 tap.next += 1;
+                let next = self.steps.get(tap.next);
+                tap.due = next.map_or(f64::INFINITY, |step| step.time + tap.delay);
             }
+            self.due = self.due.min(tap.due);
             oldest = oldest.min(tap.next - 1);
             jerk += self.steps[tap.next - 1].velocity * tap.weight;
         }
@@ -108,6 +120,10 @@ impl<const N: usize> Taps<N> {
     pub(crate) fn set_back(&mut self, span: f64) {
         for step in &mut self.steps {
             step.time -= span;
+        }
+        self.due -= span;
+        for tap in &mut self.taps {
+            tap.due -= span;
         }
     }
 }

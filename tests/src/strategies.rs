@@ -3,7 +3,7 @@
 //!
 //! Not here: what must hold for them.
 
-use crate::course::{Course, Lead, Leg, Numbers, numbers};
+use crate::course::{Course, Lead, Leg, Numbers, arc, go, numbers};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use toolglide_kinematics::Vector;
@@ -164,6 +164,48 @@ pub fn curves<const N: usize>() -> impl Strategy<Value = Course<N>> {
                 legs.push(at);
             }
             Course::of_lines([0.0; N], &legs, feedrate, tolerance)
+        })
+}
+
+/// Courses of lines and arcs in the plane of the first two axes that meet without a corner, or with
+/// hardly one.
+pub fn bends<const N: usize>() -> impl Strategy<Value = Course<N>> {
+    let bend = (
+        prop_oneof![1 => Just(None), 3 => logarithmic(0.1, 40.0).prop_map(Some)],
+        logarithmic(0.02, 5.5),
+        any::<bool>(),
+        prop_oneof![4 => Just(0.0), 1 => logarithmic(1e-5, 0.3)],
+    );
+    (
+        logarithmic(1.0, 1000.0),
+        logarithmic(1e-3, 0.5),
+        prop_oneof![2 => Just(None), 1 => logarithmic(0.1, 40.0).prop_map(Some)],
+        prop::collection::vec(bend, 2..=20),
+    )
+        .prop_map(|(feedrate, tolerance, of_all, bends)| {
+            let mut legs = Vec::with_capacity(bends.len());
+            let (mut at, mut heading) = ([0.0; N], 0.3_f64);
+            for (radius, long, ccw, kink) in bends {
+                heading += kink;
+                let Some(radius) = radius.map(|radius| of_all.unwrap_or(radius)) else {
+                    at[0] += long * heading.cos();
+                    at[1] += long * heading.sin();
+                    legs.push(go(Lead::Line(at), feedrate, tolerance));
+                    continue;
+                };
+                let towards = if ccw { radius } else { -radius };
+                let mut center = at;
+                center[0] -= towards * heading.sin();
+                center[1] += towards * heading.cos();
+                heading += long.copysign(towards);
+                at[0] = center[0] + towards * heading.sin();
+                at[1] = center[1] - towards * heading.cos();
+                legs.push(go(arc(center, at, [0, 1], ccw, 0), feedrate, tolerance));
+            }
+            Course {
+                start: [0.0; N],
+                legs,
+            }
         })
 }
 

@@ -28,3 +28,8 @@ fn corners_of_any_angle() {
 fn curves_cut_into_chords() {
     run::try_all(strategies::curves::<3>(), CASES, keeps);
 }
+
+#[test]
+fn lines_and_arcs_without_a_corner() {
+    run::try_all(strategies::bends::<2>(), MIXED, keeps_behind_one);
+}

@@ -70,3 +70,8 @@ fn chords_of_curves_in_three_axes_are_planned_within_their_limits() {
 fn chords_of_curves_in_four_axes_are_planned_within_their_limits() {
     judge_all(strategies::curves::<4>());
 }
+
+#[test]
+fn lines_and_arcs_without_a_corner_are_planned_within_their_limits() {
+    judge_all(strategies::bends::<2>());
+}

@@ -17,14 +17,20 @@ const DESIGNS: u32 = 9;
 /// A chain that takes this much longer than the best one tells that shorter ones need not be tried.
 const HOPELESS: f64 = 1.25;
 
+/// So many chains in a row that take longer than the best one tell the same.
+const WORSE_IN_A_ROW: u32 = 2;
+
 /// Time that is so little more than what the feedrates of the program ask for that no chain need be
 /// tried for the rest, as their ratio.
 const ENOUGH: f64 = 1.01;
 
+/// The same once one chain took longer than the best one.
+const NEARLY_ENOUGH: f64 = 1.05;
+
 impl<const N: usize> LookAhead<N> {
     /// Times what waits; where motion begins, behind the chain that serves it best.
     pub(super) fn decide(&mut self, out: &mut impl FnMut(Command<N>)) {
-        if self.chosen && self.fixed == 0 {
+        if self.chooses() {
             self.choose();
             out(Command::Filters {
                 long: self.chain.long(),
@@ -32,8 +38,15 @@ impl<const N: usize> LookAhead<N> {
             });
         } else if !self.solve() {
             self.carry_out(out);
-            self.decide(out);
+            if !self.pulses.is_empty() {
+                self.decide(out);
+            }
         }
+    }
+
+    /// Whether a chain is chosen for what waits, so that nothing depends on the one in use.
+    pub(super) fn chooses(&self) -> bool {
+        self.chosen && self.fixed == 0
     }
 
     /// What was planned last happens to its end; what came after it begins at rest.
@@ -56,20 +69,31 @@ impl<const N: usize> LookAhead<N> {
             design = design.max(pulse.feedrate);
             least += pulse.length / pulse.feedrate;
         }
-        let (mut best, mut takes) = (f64::INFINITY, f64::INFINITY);
-        let mut best_design = design;
-        for _ in 0..DESIGNS {
-            takes = self.try_design(design);
-            if takes < best {
-                (best, best_design) = (takes, design);
+        let mut best = f64::INFINITY;
+        let (mut best_design, mut best_capped) = (design, false);
+        let mut worse = 0;
+        for number in 0..DESIGNS {
+            let takes = self.try_design(design);
+            if number == 0 || takes < best {
+                (best, best_design, best_capped) = (takes, design, self.planned_capped);
+                std::mem::swap(&mut self.pulses, &mut self.best);
+                worse = 0;
+            } else {
+                worse += 1;
             }
-            if takes > HOPELESS * best || best < ENOUGH * least {
+            let enough = if worse > 0 { NEARLY_ENOUGH } else { ENOUGH };
+            if worse >= WORSE_IN_A_ROW || takes > HOPELESS * best || best < enough * least {
                 break;
             }
             design *= 0.5;
         }
-        if takes > best {
-            self.try_design(best_design);
+        std::mem::swap(&mut self.pulses, &mut self.best);
+        if worse > 0 {
+            self.use_chain(designed_for(&self.limits, best_design));
+            self.planned = self.pulses.len();
+            self.planned_capped = best_capped;
+            self.capped = best_capped;
+            self.time();
         }
     }
 
@@ -96,13 +120,14 @@ impl<const N: usize> LookAhead<N> {
     pub(super) fn limit(&mut self, index: usize) {
         let pulse = &mut self.pulses[index];
         let feedrate = pulse.feedrate;
-        pulse.step = feedrate.min(largest_multiple(&pulse.direction, &self.change));
+        pulse.step = feedrate;
+        if (pulse.direction.abs() * feedrate - self.change).max() > 0.0 {
+            pulse.step = feedrate.min(largest_multiple(&pulse.direction, &self.change));
+        }
         let most = feedrate.min(STEPS * pulse.step);
         pulse.limit = most;
         if let Some(arc) = pulse.arc {
-            let pace = self.arcs.of(arc);
-            pulse.limit = most.min(pace.feed);
-            pulse.steady = pace.steady;
+            pulse.limit = most.min(self.arcs.of(arc));
         }
     }
 }

@@ -18,16 +18,6 @@ const PASSING_STEPS: u32 = 8;
 const PASSING_PRECISION: f64 = 0.005;
 
 impl<const N: usize> LookAhead<N> {
-    pub(super) fn allowed(&self, corner: usize) -> f64 {
-        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
-        let tolerance = before.tolerance.min(after.tolerance);
-        if before.smooth {
-            tolerance.max(before.steady)
-        } else {
-            tolerance
-        }
-    }
-
     /// Overlap of a corner by itself: as much is missing before it as is gained behind it, and the
     /// tolerance bounds both.
     fn own_overlap(&self, corner: usize) -> f64 {

@@ -9,10 +9,6 @@ use toolglide_kinematics::numeric::LIMIT_SLACK;
 /// Corners that contribute less than this share of the tolerance are left as they are.
 const SHARE_THAT_COUNTS: f64 = 0.02;
 
-/// By how much more the motion may be inside an arc between two vertices than at them while a corner is in
-/// the window, as a share of how far they lie outside: two thirds of it have been seen.
-const BETWEEN_VERTICES: f64 = 0.25;
-
 /// Rounds of corrections; after that dwells are lengthened only, which always succeeds.
 const ROUNDS: u32 = 40;
 
@@ -48,16 +44,8 @@ impl<const N: usize> LookAhead<N> {
                     // The bound is largest where the path turns.
                     continue;
                 }
-                let allowed = self.allowed(corner);
-                let mut bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
-                let bulge = self.pulses[corner].bulge;
-                if bulge > 0.0 {
-                    // The turns of the arc lead inside, where the vertex does not count against them.
-                    let share = self.schedule.share_of_corners(&self.pulses);
-                    if share > 0.0 {
-                        bound += bulge * (BETWEEN_VERTICES + 2.0 * share).min(1.0);
-                    }
-                }
+                let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
+                let allowed = self.room(corner, bound);
                 if bound > allowed * (1.0 + LIMIT_SLACK) {
                     broken = true;
                     self.dirty[corner] = true;
@@ -72,6 +60,17 @@ impl<const N: usize> LookAhead<N> {
             self.time();
         }
         false
+    }
+
+    /// Whether the bound holds at every corner.
+    pub(super) fn holds(&mut self) -> bool {
+        (0..self.pulses.len().saturating_sub(1)).all(|corner| {
+            if self.pulses[corner].part || self.is_settled(corner) {
+                return true;
+            }
+            let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
+            bound <= self.room(corner, bound) * (1.0 + LIMIT_SLACK)
+        })
     }
 
     /// Whether nothing that may still change is in the window of a corner, or nothing but one arc.

@@ -52,61 +52,70 @@ impl<const N: usize> LookAhead<N> {
 
     /// Keeps each pulse in step with those before it; whether anything changed.
     fn rise(&mut self) -> bool {
-        let long = self.chain.long();
+        let (long, total) = (self.chain.long(), self.chain.total());
+        let count = self.pulses.len();
         let mut changed = false;
         let mut clock = 0.0;
-        let mut cuts = std::mem::take(&mut self.cuts);
-        cuts.clear();
         self.times.clear();
-        for index in 0..self.pulses.len() {
-            let mut pulse = self.pulses[index];
-            if index < self.fixed {
-                clock += pulse.gap;
-            } else if let Some(before) = cuts.last() {
-                clock += self.dwell_after(before).0;
+        // What comes after the first cut.
+        let mut rest = std::mem::take(&mut self.cuts);
+        rest.clear();
+        let mut cut = None;
+        for index in 0..count {
+            let mut at = index;
+            if let Some(cut) = cut {
+                at = self.pulses.len();
+                self.pulses.push(rest[index - cut]);
             }
-            let mut left = self.pulses.len() - index;
+            if index < self.fixed {
+                clock += self.pulses[index].gap;
+            } else if let Some(before) = at.checked_sub(1) {
+                clock += self.dwell_after(&self.pulses[before]).0;
+            }
             while index >= self.fixed {
-                let feed = self.feed_after(&pulse, &cuts, clock);
+                let pulse = &self.pulses[at];
+                let feed = self.feed_after(at, clock);
                 if feed >= pulse.feed * (1.0 - TOO_HIGH) {
                     break;
                 }
                 changed = true;
                 let head = feed * long;
-                if pulse.length <= (1.0 + WORTH_A_CUT) * head
-                    || cuts.len() + left >= cuts.capacity()
-                {
-                    pulse.feed = feed;
+                if !self.is_worth_a_cut(pulse, head, at + count - index) {
+                    self.pulses[at].feed = feed;
                     break;
                 }
                 let (mut before, after) = pulse.split(head);
-                before.overlap = self.chain.total();
+                before.overlap = total;
                 before.feed = feed;
-                self.times.push((clock, clock + head / feed));
-                clock += head / feed;
-                cuts.push(before);
-                pulse = after;
-                left += 1;
+                if cut.is_none() {
+                    cut = Some(index + 1);
+                    rest.extend(self.pulses.drain(index + 1..));
+                }
+                self.pulses[at] = before;
+                self.pulses.push(after);
+                self.times.push((clock, clock + long));
+                clock += long;
+                at += 1;
             }
-            let begin = clock;
-            clock += pulse.length / pulse.feed;
-            self.times.push((begin, clock));
-            cuts.push(pulse);
+            let pulse = &self.pulses[at];
+            let end = clock + pulse.length / pulse.feed;
+            self.times.push((clock, end));
+            clock = end;
         }
-        std::mem::swap(&mut self.pulses, &mut cuts);
-        self.cuts = cuts;
+        self.cuts = rest;
         changed
     }
 
     /// Largest feedrate of a pulse after those before it.
-    fn feed_after(&self, pulse: &Pulse<N>, before: &[Pulse<N>], begin: f64) -> f64 {
-        let long = self.chain.long();
+    fn feed_after(&self, at: usize, begin: f64) -> f64 {
+        let (pulses, long) = (&self.pulses, self.chain.long());
+        let pulse = &pulses[at];
         let mut feed = pulse.feed;
         let mut since = begin;
-        for index in (0..before.len()).rev() {
-            let earlier = &before[index];
+        for index in (0..at).rev() {
+            let earlier = &pulses[index];
             let dwells = if index + 1 < self.fixed {
-                before[index + 1].gap > 0.0
+                pulses[index + 1].gap > 0.0
             } else {
                 self.dwell_after(earlier).1
             };
@@ -121,7 +130,7 @@ impl<const N: usize> LookAhead<N> {
             if self.times[index].1 + long <= begin + TOUCH {
                 return feed;
             }
-            feed = feed.min(self.feed_beside(pulse, earlier));
+            feed = self.feed_beside(feed, pulse, earlier);
             since = self.times[index].0;
         }
         if !self.underway && since + long > begin + TOUCH {
@@ -132,59 +141,78 @@ impl<const N: usize> LookAhead<N> {
 
     /// Keeps each pulse in step with those after it; whether anything changed.
     fn fall(&mut self) -> bool {
-        let long = self.chain.long();
+        let (long, total) = (self.chain.long(), self.chain.total());
+        let count = self.pulses.len();
         let mut changed = false;
-        // Time runs backward from the end; the last pulse comes first.
+        // Time runs backward from the end.
         let mut clock = 0.0;
-        let mut cuts = std::mem::take(&mut self.cuts);
-        cuts.clear();
         self.times.clear();
-        for index in (self.fixed..self.pulses.len()).rev() {
+        // What comes before the last cut and after it, the last pulse first.
+        let mut done = std::mem::take(&mut self.cuts);
+        done.clear();
+        let mut cut = false;
+        for index in (self.fixed..count).rev() {
             let mut pulse = self.pulses[index];
-            if !cuts.is_empty() {
+            if index + 1 < count {
                 clock += self.dwell_after(&pulse).0;
             }
-            let mut left = index + 1;
             loop {
-                let feed = self.feed_before(&pulse, &cuts, clock);
+                let feed = if cut {
+                    self.feed_before(&pulse, done.iter().rev(), clock)
+                } else {
+                    self.feed_before(&pulse, self.pulses[index + 1..].iter(), clock)
+                };
                 if feed >= pulse.feed * (1.0 - TOO_HIGH) {
                     break;
                 }
                 changed = true;
                 let tail = feed * long;
-                if pulse.length <= (1.0 + WORTH_A_CUT) * tail
-                    || cuts.len() + left >= cuts.capacity()
-                {
+                let others = if cut { done.len() } else { count - 1 - index };
+                if !self.is_worth_a_cut(&pulse, tail, others + index + 1) {
                     pulse.feed = feed;
                     break;
                 }
                 let (mut before, mut after) = pulse.split(pulse.length - tail);
-                before.overlap = self.chain.total();
+                before.overlap = total;
                 after.feed = feed;
-                self.times.push((clock, clock + tail / feed));
-                clock += tail / feed;
-                cuts.push(after);
+                if !cut {
+                    cut = true;
+                    done.extend(self.pulses.drain(index + 1..).rev());
+                }
+                self.times.push((clock, clock + long));
+                clock += long;
+                done.push(after);
                 pulse = before;
-                left += 1;
             }
-            let begin = clock;
-            clock += pulse.length / pulse.feed;
-            self.times.push((begin, clock));
-            cuts.push(pulse);
+            let end = clock + pulse.length / pulse.feed;
+            self.times.push((clock, end));
+            clock = end;
+            if cut {
+                done.push(pulse);
+            } else {
+                self.pulses[index].feed = pulse.feed;
+            }
         }
-        self.pulses.truncate(self.fixed);
-        self.pulses.extend(cuts.iter().rev());
-        self.cuts = cuts;
+        if cut {
+            self.pulses.truncate(self.fixed);
+            self.pulses.extend(done.iter().rev());
+        }
+        self.cuts = done;
         changed
     }
 
-    /// Largest feedrate of a pulse before those after it, of which the first comes last.
-    fn feed_before(&self, pulse: &Pulse<N>, after: &[Pulse<N>], end: f64) -> f64 {
+    /// Largest feedrate of a pulse before those after it.
+    fn feed_before<'a>(
+        &self,
+        pulse: &'a Pulse<N>,
+        after: impl Iterator<Item = &'a Pulse<N>>,
+        end: f64,
+    ) -> f64 {
         let long = self.chain.long();
         let mut feed = pulse.feed;
         let mut since = end;
         let mut previous = pulse;
-        for index in (0..after.len()).rev() {
+        for (later, &(begin, over)) in after.zip(self.times.iter().rev()) {
             if self.dwell_after(previous).1 {
                 return if since + long > end + TOUCH {
                     feed.min(pulse.step)
@@ -192,13 +220,12 @@ impl<const N: usize> LookAhead<N> {
                     feed
                 };
             }
-            let (begin, over) = self.times[index];
             if over + long <= end + TOUCH {
                 return feed;
             }
-            feed = feed.min(self.feed_beside(pulse, &after[index]));
+            feed = self.feed_beside(feed, pulse, later);
             since = begin;
-            previous = &after[index];
+            previous = later;
         }
         if since + long > end + TOUCH {
             feed = feed.min(pulse.step);
@@ -206,19 +233,25 @@ impl<const N: usize> LookAhead<N> {
         feed
     }
 
-    /// Largest feedrate with which a pulse may be in the longest filter together with another one.
-    fn feed_beside(&self, pulse: &Pulse<N>, other: &Pulse<N>) -> f64 {
-        let velocity = other.direction * other.feed;
-        let mut feed = f64::INFINITY;
+    /// Whether a pulse is long enough to be cut at a distance from one end, and there is room for one
+    /// more than so many pulses.
+    fn is_worth_a_cut(&self, pulse: &Pulse<N>, part: f64, count: usize) -> bool {
+        pulse.length > (1.0 + WORTH_A_CUT) * part && count < self.pulses.capacity()
+    }
+
+    /// Largest feedrate up to `most` with which a pulse may be in the longest filter together with
+    /// another one.
+    fn feed_beside(&self, most: f64, pulse: &Pulse<N>, other: &Pulse<N>) -> f64 {
+        let mut feed = most;
         for axis in 0..N {
             let share = pulse.direction[axis];
-            let magnitude = share.abs();
-            if magnitude > 0.0 {
-                let along = velocity[axis] * share.signum();
-                feed = feed.min((along + self.change[axis]) / magnitude);
+            let (magnitude, sign) = (share.abs(), share.signum());
+            let along = other.direction[axis] * other.feed * sign + self.change[axis];
+            if magnitude * feed > along {
+                feed = along / magnitude;
             }
         }
-        feed.max(CRAWL * pulse.step)
+        feed.max(most.min(CRAWL * pulse.step))
     }
 
     /// Cuts a pulse in two at a distance.
@@ -231,10 +264,14 @@ impl<const N: usize> LookAhead<N> {
 
     /// Makes one pulse again of what was cut, from one of them on.
     pub(super) fn join(&mut self, from: usize) {
-        let mut kept = from;
-        for index in from..self.pulses.len() {
+        let first = (from..self.pulses.len()).find(|&index| self.pulses[index].part);
+        let Some(first) = first else {
+            return;
+        };
+        let mut kept = first + 1;
+        for index in first + 1..self.pulses.len() {
             let next = self.pulses[index];
-            if kept > from && self.pulses[kept - 1].part {
+            if self.pulses[kept - 1].part {
                 let whole = &mut self.pulses[kept - 1];
                 let span = next.to - whole.from;
                 *whole = Pulse {

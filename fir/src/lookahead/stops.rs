@@ -19,49 +19,58 @@ impl<const N: usize> LookAhead<N> {
             return;
         };
         let planned = self.schedule.end(last) - end;
-        let is_corner = |pulse: &Pulse<N>| !pulse.smooth && pulse.turn > 0.0;
         let moving = self.least_time();
         let stops = self.pulses[first..last]
             .iter()
             .filter(|pulse| is_corner(pulse));
         let mut dwelling = 0.0;
         stops.for_each(|_| dwelling += total);
-        if planned <= moving + dwelling {
+        if dwelling <= 0.0 || planned <= moving + dwelling {
             return;
         }
         self.kept.clear();
         self.kept.extend_from_slice(&self.pulses);
-        // Behind the first stop nothing is left of the plan.
-        let stop = if self.fixed == 0 {
-            0
-        } else {
-            (first..last)
-                .find(|&index| is_corner(&self.pulses[index]))
-                .map_or(last, |corner| corner + 1)
-        };
-        self.join(stop.max(self.fixed));
-        if let Some(before) = stop.checked_sub(1)
-            && stop <= last
+        let capped = std::mem::replace(&mut self.capped, false);
+        // Behind the first stop nothing is left of the plan, before it as little as may be.
+        let stop = (first..last).find(|&index| is_corner(&self.pulses[index]));
+        for from in [self.fixed, stop.map_or(last, |corner| corner + 1)] {
+            self.pulses.clear();
+            self.pulses.extend_from_slice(&self.kept);
+            let rests = from
+                .checked_sub(1)
+                .is_none_or(|corner| is_corner(&self.pulses[corner]));
+            self.stop_from(from);
+            let last = self.pulses.len() - 1;
+            if self.schedule.end(last) - end > planned {
+                break;
+            }
+            if self.in_step() && (rests || self.holds()) {
+                return;
+            }
+        }
+        std::mem::swap(&mut self.pulses, &mut self.kept);
+        self.capped = capped;
+        self.time();
+    }
+
+    /// Stops at every corner from the beginning of a pulse on.
+    fn stop_from(&mut self, from: usize) {
+        self.join(from);
+        if let Some(before) = from.checked_sub(1)
+            && is_corner(&self.pulses[before])
         {
             let corner = &mut self.pulses[before];
             corner.pass = false;
             corner.overlap = 0.0;
         }
-        for pulse in &mut self.pulses[stop.max(self.fixed)..] {
+        for pulse in &mut self.pulses[from..] {
             pulse.feed = pulse.limit;
             let stops = is_corner(pulse);
             pulse.pass = !stops;
-            pulse.overlap = if stops { 0.0 } else { total };
+            pulse.overlap = if stops { 0.0 } else { self.chain.total() };
         }
-        let capped = std::mem::replace(&mut self.capped, false);
         self.ramp();
         self.time();
-        let last = self.pulses.len() - 1;
-        if self.schedule.end(last) - end > planned || !self.in_step() {
-            std::mem::swap(&mut self.pulses, &mut self.kept);
-            self.capped = capped;
-            self.time();
-        }
     }
 
     /// Less time than what waits takes with a full stop at every corner, but for the dwells.
@@ -82,4 +91,9 @@ impl<const N: usize> LookAhead<N> {
         }
         time
     }
+}
+
+/// Whether the path turns at the end of a pulse otherwise than along an arc.
+fn is_corner<const N: usize>(pulse: &Pulse<N>) -> bool {
+    !pulse.smooth && pulse.turn > 0.0
 }

@@ -1,0 +1,74 @@
+//! How far the bound may go at a corner, so that the motion is within the tolerance of lines and arcs.
+//!
+//! Source: ours. The bound holds for the polygon of lines and chords. The vertices of chords lie outside
+//! their arc and the middles of chords inside. Between two vertices the bound is convex, and below the
+//! mean of theirs the more the path turns in the window: where it turns as the arc does, by as much as
+//! the arc bends away from its chord, so that there the motion is as far inside of the arc everywhere.
+//! Not here: the bound.
+
+use super::LookAhead;
+use crate::bend::STEADY_EXCESS;
+
+/// Share of the sagitta of chords that a corner beside them leaves unused before anything is known of its
+/// window: where half of it is on the arc, a sixth is wanted, and more with a dwell.
+const UNUSED: f64 = 1.0 / 3.0;
+
+impl<const N: usize> LookAhead<N> {
+    fn tolerance(&self, corner: usize) -> f64 {
+        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        before.tolerance.min(after.tolerance)
+    }
+
+    /// What may be expected to be allowed at a corner.
+    pub(super) fn allowed(&self, corner: usize) -> f64 {
+        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        let tolerance = self.tolerance(corner);
+        if before.smooth {
+            STEADY_EXCESS * tolerance + before.outward
+        } else {
+            tolerance - UNUSED * before.sagitta.max(after.sagitta)
+        }
+    }
+
+    /// What is allowed at the corner whose bound was asked for last.
+    pub(super) fn room(&self, corner: usize, bound: f64) -> f64 {
+        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        let tolerance = self.tolerance(corner);
+        let sagitta = before.sagitta.max(after.sagitta);
+        if sagitta <= 0.0 || bound <= tolerance - sagitta {
+            return tolerance;
+        }
+        let beside = || self.room_beside(corner).min(self.room_beside(corner + 1));
+        match before.arc {
+            // On one arc, the mean of points no further apart is no further inside.
+            Some(arc) if before.smooth && self.schedule.lies_on(&self.pulses, arc) => {
+                STEADY_EXCESS * tolerance + before.outward
+            }
+            Some(arc) if before.smooth => {
+                // Turns of the arc itself lead inside, where the vertex counts against them.
+                let inside = self.schedule.contribution_of(&self.pulses, arc);
+                let at_vertex = before.outward.min(2.0 * inside - before.outward);
+                STEADY_EXCESS * tolerance + at_vertex.min(beside())
+            }
+            _ => tolerance + beside().min(0.0),
+        }
+    }
+
+    /// By how much the bound at both ends of a chord may exceed the tolerance for the sake of its middle.
+    fn room_beside(&self, index: usize) -> f64 {
+        let chord = &self.pulses[index];
+        if chord.sagitta <= 0.0 {
+            return f64::INFINITY;
+        }
+        let begins_outward = match index.checked_sub(1).map(|before| &self.pulses[before]) {
+            Some(before) if before.smooth => before.outward,
+            _ => 0.0,
+        };
+        let inside = chord.sagitta - 0.5 * (begins_outward + chord.outward);
+        let turn = chord.curvature * chord.length;
+        let turning = self.schedule.turning(&self.pulses, turn) / chord.curvature;
+        // While the mean goes along the chord, what is on the arc goes less far beside a faster pulse.
+        let along = (chord.feed / self.schedule.rate()).min(1.0);
+        chord.sagitta * turning.min(1.0) * along * along - inside
+    }
+}
