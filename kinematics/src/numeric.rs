@@ -71,6 +71,10 @@ pub const JUDGE_HALVINGS: u32 = 40;
 /// reached by motion that follows its path, a fraction of a second for motion made to be awkward.
 pub const JUDGE_PARTS: u32 = 50_000;
 
+/// How many more it looks at for every move that the piece may be on: some ten are needed where each
+/// of them bends away from the motion by as much as the others.
+pub const JUDGE_PARTS_OF_A_MOVE: u32 = 64;
+
 /// Numbers beyond this are no motion, mm, s and their quotients: sixth powers of them must still be
 /// finite.
 pub const LARGEST_MAGNITUDE: f64 = 1e30;

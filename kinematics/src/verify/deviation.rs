@@ -6,7 +6,9 @@
 
 use super::bernstein::Cubic;
 use super::route::Route;
-use crate::numeric::{JUDGE_HALVINGS, JUDGE_PARTS, JUDGE_PRECISION, LENGTH_SLACK};
+use crate::numeric::{
+    JUDGE_HALVINGS, JUDGE_PARTS, JUDGE_PARTS_OF_A_MOVE, JUDGE_PRECISION, LENGTH_SLACK,
+};
 use crate::vector::Vector;
 
 /// A value that the motion attains.
@@ -49,7 +51,8 @@ pub(super) fn largest<const N: usize>(
             bounds: [0.0; 2],
             attained: [start; 2],
         },
-        parts: 0,
+        parts: JUDGE_PARTS
+            .saturating_add(JUDGE_PARTS_OF_A_MOVE.saturating_mul(last.saturating_sub(first))),
     };
     let part = Part {
         curve: *curve,
@@ -121,12 +124,13 @@ struct Search<'a, const N: usize> {
     route: &'a Route<N>,
     known: [f64; 2],
     found: Deviation,
+    /// How many parts may still be looked at.
     parts: u32,
 }
 
 impl<const N: usize> Search<'_, N> {
     fn descend(&mut self, part: &Part<N>, halvings: u32) {
-        self.parts += 1;
+        self.parts = self.parts.saturating_sub(1);
         let lowest = self.lowest(part);
         let bounds = lowest.map(|measure| measure.bound());
         let mut place = 0.5;
@@ -138,7 +142,7 @@ impl<const N: usize> Search<'_, N> {
             let point = part.curve.at(place);
             self.attain(part, &point, part.from + (part.to - part.from) * place);
         }
-        if halvings == 0 || self.parts > JUDGE_PARTS || self.settled(bounds) == [true; 2] {
+        if halvings == 0 || self.parts == 0 || self.settled(bounds) == [true; 2] {
             return self.accept(bounds);
         }
         let (first, last) = self.narrow(part, &part.curve.at(place), bounds);

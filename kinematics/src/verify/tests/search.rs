@@ -16,6 +16,25 @@ fn curve() -> impl Strategy<Value = Cubic<3>> {
     [point(), point(), point(), point()].prop_map(|points| Cubic { points })
 }
 
+#[test]
+fn the_deviation_of_one_curve_from_very_many_moves_is_found() {
+    let mut route = Route::new(Vector::<2>::zeros());
+    let tolerance = Tolerance::new(0.1).unwrap();
+    for number in 1..=20_000_u32 {
+        let along = f64::from(number) * 0.01;
+        let end = Vector::<2>::new(along, 0.002 * (0.37 * f64::from(number)).sin());
+        let step = Move::line_to(end, Feedrate::RAPID, tolerance).unwrap();
+        route.expect(&step).unwrap();
+    }
+    let at = |share: f64| Vector::<2>::new(200.0 * share, 0.0);
+    let points = [at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)];
+    let found = deviation::largest(&route, &Cubic { points }, 0, route.len() - 1, [0.0; 2]);
+    assert!(
+        found.bounds[0] > 0.0015 && found.bounds[0] < 0.0021,
+        "{found:?}"
+    );
+}
+
 const STEPS: u32 = 250;
 
 fn shares() -> impl Iterator<Item = f64> {
