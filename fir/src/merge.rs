@@ -233,10 +233,7 @@ mod tests {
             bulge: 0.0,
             feedrate: 10.0,
             tolerance: 0.1,
-            serves: Serves {
-                first: index,
-                last: index,
-            },
+            serves: Serves::one(index),
         }
     }
 

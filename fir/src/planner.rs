@@ -12,8 +12,8 @@ use crate::settings::{Method, Settings};
 use crate::sweep::Sweep;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{
-    Arc, Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
-    check_contact, largest_multiple,
+    Arc, Intake, Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath,
+    Vector, largest_multiple,
 };
 
 /// Room for commands that wait to become motion.
@@ -48,11 +48,8 @@ pub struct FirInterpolation<const N: usize> {
     chosen: bool,
     /// Programmed feedrate since the motion was last at rest for other time constants.
     class: f64,
-    /// Where the programmed path has come to.
-    position: Vector<N>,
+    intake: Intake<N>,
     merger: Merger<N>,
-    index: u32,
-    finished: bool,
     arc: Option<ArcUnderWay<N>>,
     look: LookAhead<N>,
     sweep: Sweep<N>,
@@ -79,10 +76,8 @@ impl<const N: usize> FirInterpolation<N> {
             method: settings.method,
             chosen: settings.chain.is_none(),
             class: settings.limits.velocity().max(),
-            position: start,
+            intake: Intake::new(start),
             merger: Merger::new(start),
-            index: 0,
-            finished: false,
             arc: None,
             sweep: Sweep::new(start, look.chain().clone(), COMMANDS),
             look,
@@ -206,7 +201,7 @@ impl<const N: usize> FirInterpolation<N> {
             None => {
                 let stops = under_way.stops;
                 self.arc = None;
-                if stops || self.method == Method::PointToPoint || self.finished {
+                if stops || self.method == Method::PointToPoint || self.intake.is_closed() {
                     self.rest();
                 }
             }
@@ -217,18 +212,9 @@ impl<const N: usize> FirInterpolation<N> {
 
 impl<const N: usize> MotionPlanner<N> for FirInterpolation<N> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
-        let index = self.index;
-        if self.finished {
-            return Err(PlanError::Finished { index });
-        }
-        check_contact(next, self.position).map_err(|reason| PlanError::Path { index, reason })?;
-        self.index = index.checked_add(1).ok_or(PlanError::TooMany { index })?;
+        let index = self.intake.take(next)?;
         while self.advance_arc() {}
-        self.position = next.end(self.position);
-        let serves = Serves {
-            first: index,
-            last: index,
-        };
+        let serves = Serves::one(index);
         match next.path() {
             Path::Line { end } => {
                 self.vertex(*end, 0.0, next, serves);
@@ -260,11 +246,8 @@ impl<const N: usize> MotionPlanner<N> for FirInterpolation<N> {
     }
 
     fn finish(&mut self) -> Result<(), PlanError> {
-        if !self.finished {
-            self.finished = true;
-            if self.arc.is_none() {
-                self.rest();
-            }
+        if self.intake.close() && self.arc.is_none() {
+            self.rest();
         }
         Ok(())
     }
@@ -289,17 +272,5 @@ pub fn plan<const N: usize>(
     path: &Toolpath<N>,
     settings: &Settings<N>,
 ) -> Result<Plan<N>, PlanError> {
-    let mut planner = FirInterpolation::new(path.start(), settings);
-    let mut plan = Plan::starting_at(path.start());
-    for step in path.moves() {
-        planner.push(step)?;
-        while let Some(piece) = planner.pull() {
-            plan.push(piece);
-        }
-    }
-    planner.finish()?;
-    while let Some(piece) = planner.pull() {
-        plan.push(piece);
-    }
-    Ok(plan)
+    Plan::of(path, &mut FirInterpolation::new(path.start(), settings))
 }

@@ -24,15 +24,7 @@ fn motion(periods: f64) -> Vec<Piece<3>> {
             _ => 0.0,
         });
         let duration = PERIOD * periods * (1.0 + 0.3 * f64::from(number % 7) / 7.0);
-        let piece = Piece::new(
-            &state,
-            duration,
-            Vector::zeros(),
-            Serves {
-                first: number,
-                last: number,
-            },
-        );
+        let piece = Piece::new(&state, duration, Vector::zeros(), Serves::one(number));
         // The end is where the polynomial leads.
         let almost = piece.at(duration * (1.0 - f64::EPSILON));
         pieces.push(Piece::new(

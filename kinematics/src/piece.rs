@@ -14,6 +14,17 @@ pub struct Serves {
     pub last: u32,
 }
 
+impl Serves {
+    /// One move alone.
+    #[must_use]
+    pub fn one(index: u32) -> Self {
+        Self {
+            first: index,
+            last: index,
+        }
+    }
+}
+
 /// A stretch of motion of constant jerk, the moves it serves, and its exact end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece<const N: usize> {

@@ -4,7 +4,8 @@
 
 use crate::error::ToolpathError;
 use crate::piece::Piece;
-use crate::toolpath::Move;
+use crate::plan::Plan;
+use crate::toolpath::{Move, Toolpath};
 
 /// Plans motion while the path is still being read.
 ///
@@ -29,6 +30,23 @@ pub trait MotionPlanner<const N: usize> {
     /// How the windows came out so far, for a planner that solves windows and may keep an older plan.
     fn windows(&self) -> Option<WindowTally> {
         None
+    }
+}
+
+impl<const N: usize> Plan<N> {
+    /// The motion that a planner, at rest at the start of `path`, makes of all of it.
+    ///
+    /// # Errors
+    /// As [`MotionPlanner::push`].
+    pub fn of(path: &Toolpath<N>, planner: &mut impl MotionPlanner<N>) -> Result<Self, PlanError> {
+        let mut plan = Self::starting_at(path.start());
+        for step in path.moves() {
+            planner.push(step)?;
+            plan.extend(std::iter::from_fn(|| planner.pull()));
+        }
+        planner.finish()?;
+        plan.extend(std::iter::from_fn(|| planner.pull()));
+        Ok(plan)
     }
 }
 

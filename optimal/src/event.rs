@@ -33,10 +33,7 @@ impl<const N: usize> Joint<N> {
         let start = piece.at(0.0);
         let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
         let speed = self.velocity.norm();
-        let alone = Serves {
-            first: self.index,
-            last: self.index,
-        };
+        let alone = Serves::one(self.index);
         if !steady
             || piece.serves() != alone
             || (start.velocity - self.velocity).norm() > 0.1 * JUMP_SLACK * speed

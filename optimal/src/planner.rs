@@ -11,8 +11,8 @@ use crate::span::weakest;
 use crate::stream::Stream;
 use crate::window::WindowSolver;
 use toolglide_kinematics::{
-    Limits, MotionPlanner, Move, Piece, Plan, PlanError, Tangential, Toolpath, Vector, WindowTally,
-    check_contact,
+    Intake, Limits, MotionPlanner, Move, Piece, Plan, PlanError, Tangential, Toolpath, Vector,
+    WindowTally,
 };
 use toolglide_smoothing::KinematicSmoothing;
 
@@ -22,9 +22,7 @@ const STOP_COST: f64 = 4.0;
 /// Plans time-optimal motion while the path is being read.
 #[derive(Clone, Debug)]
 pub struct TimeOptimal<const N: usize, S = SequentialSolver<N>> {
-    position: Vector<N>,
-    index: u32,
-    finished: bool,
+    intake: Intake<N>,
     optimal: Stream<S, N>,
     smoothing: KinematicSmoothing<N>,
     race: Race<N>,
@@ -44,9 +42,7 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
     #[must_use]
     pub fn with_solver(solver: S, start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
-            position: start,
-            index: 0,
-            finished: false,
+            intake: Intake::new(start),
             optimal: Stream::new(solver, start, settings),
             smoothing: KinematicSmoothing::new(
                 start,
@@ -71,19 +67,13 @@ fn time_to_stop<const N: usize>(limits: &Limits<N>) -> f64 {
 
 impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
-        let index = self.index;
-        if self.finished {
-            return Err(PlanError::Finished { index });
-        }
-        check_contact(next, self.position).map_err(|reason| PlanError::Path { index, reason })?;
+        let index = self.intake.take(next)?;
         let next = if self.race.wants_stop() {
             next.with_exact_stop()
         } else {
             *next
         };
         self.smoothing.push(&next)?;
-        self.index = index.checked_add(1).ok_or(PlanError::TooMany { index })?;
-        self.position = next.end(self.position);
         self.optimal.push(&next);
         if next.stops() {
             self.race.end_at(index);
@@ -92,11 +82,10 @@ impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> 
     }
 
     fn finish(&mut self) -> Result<(), PlanError> {
-        if !self.finished {
-            self.finished = true;
+        if self.intake.close() {
             self.smoothing.finish()?;
             self.optimal.finish();
-            self.race.end_at(self.index.saturating_sub(1));
+            self.race.end_at(self.intake.count().saturating_sub(1));
             self.race.finish();
         }
         Ok(())
@@ -159,17 +148,8 @@ pub fn plan_with<S: WindowSolver<N>, const N: usize>(
     path: &Toolpath<N>,
     settings: &Settings<N>,
 ) -> Result<Plan<N>, PlanError> {
-    let mut planner = TimeOptimal::with_solver(solver, path.start(), settings);
-    let mut plan = Plan::starting_at(path.start());
-    for step in path.moves() {
-        planner.push(step)?;
-        while let Some(piece) = planner.pull() {
-            plan.push(piece);
-        }
-    }
-    planner.finish()?;
-    while let Some(piece) = planner.pull() {
-        plan.push(piece);
-    }
-    Ok(plan)
+    Plan::of(
+        path,
+        &mut TimeOptimal::with_solver(solver, path.start(), settings),
+    )
 }

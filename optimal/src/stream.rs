@@ -63,10 +63,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
             Path::Dwell { duration } => {
                 self.rest(Some(Pause {
                     duration: *duration,
-                    serves: Serves {
-                        first: index,
-                        last: index,
-                    },
+                    serves: Serves::one(index),
                     end: self.position,
                 }));
                 return;

@@ -76,10 +76,7 @@ impl<const N: usize> ReferencePlanner<N> {
                 place,
                 serves,
             } => {
-                let serves = Serves {
-                    first: serves,
-                    last: serves,
-                };
+                let serves = Serves::one(serves);
                 let still = Sample::at_rest(place);
                 self.pieces
                     .push_back(Piece::new(&still, duration, place, serves));

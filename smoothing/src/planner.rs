@@ -10,7 +10,7 @@ use crate::merge::Vertex;
 use crate::method::{Method, Settings};
 use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
-    Arc, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector, check_contact,
+    Arc, Intake, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
 };
 
 /// Plans kinematic corner smoothing while the path is being read.
@@ -31,9 +31,7 @@ use toolglide_kinematics::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct KinematicSmoothing<const N: usize> {
-    position: Vector<N>,
-    index: u32,
-    finished: bool,
+    intake: Intake<N>,
     stops: bool,
     arc: Option<(Chords<N>, Move<N>, u32)>,
     route: Route<N>,
@@ -51,9 +49,7 @@ impl<const N: usize> KinematicSmoothing<N> {
     #[must_use]
     pub fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
-            position: start,
-            index: 0,
-            finished: false,
+            intake: Intake::new(start),
             stops: settings.method == Method::ExactStop,
             arc: None,
             route: match settings.method {
@@ -80,7 +76,7 @@ impl<const N: usize> KinematicSmoothing<N> {
                 if alone || self.stops || step.stops() {
                     self.route.rest();
                 }
-                if self.finished {
+                if self.intake.is_closed() {
                     self.route.close();
                 }
             }
@@ -104,10 +100,7 @@ fn vertex_of<const N: usize>(
         bulge,
         feedrate: step.feedrate().speed(),
         tolerance: step.tolerance(),
-        serves: Serves {
-            first: index,
-            last: index,
-        },
+        serves: Serves::one(index),
         next: 0,
     }
 }
@@ -188,14 +181,8 @@ impl<const N: usize> Route<N> {
 
 impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
-        let index = self.index;
-        if self.finished {
-            return Err(PlanError::Finished { index });
-        }
-        check_contact(next, self.position).map_err(|reason| PlanError::Path { index, reason })?;
-        self.index = index.checked_add(1).ok_or(PlanError::TooMany { index })?;
+        let index = self.intake.take(next)?;
         while self.advance_arc() {}
-        self.position = next.end(self.position);
         match next.path() {
             Path::Line { end } => {
                 self.take_point(next, index, *end, 0.0);
@@ -216,11 +203,8 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
             Path::Dwell { duration } => {
                 self.route.dwell(Dwell {
                     duration: *duration,
-                    serves: Serves {
-                        first: index,
-                        last: index,
-                    },
-                    end: self.position,
+                    serves: Serves::one(index),
+                    end: self.intake.end(),
                 });
             }
             _ => {}
@@ -229,11 +213,8 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
     }
 
     fn finish(&mut self) -> Result<(), PlanError> {
-        if !self.finished {
-            self.finished = true;
-            if self.arc.is_none() {
-                self.route.close();
-            }
+        if self.intake.close() && self.arc.is_none() {
+            self.route.close();
         }
         Ok(())
     }
@@ -258,17 +239,5 @@ pub fn plan<const N: usize>(
     path: &Toolpath<N>,
     settings: &Settings<N>,
 ) -> Result<Plan<N>, PlanError> {
-    let mut planner = KinematicSmoothing::new(path.start(), settings);
-    let mut plan = Plan::starting_at(path.start());
-    for step in path.moves() {
-        planner.push(step)?;
-        while let Some(piece) = planner.pull() {
-            plan.push(piece);
-        }
-    }
-    planner.finish()?;
-    while let Some(piece) = planner.pull() {
-        plan.push(piece);
-    }
-    Ok(plan)
+    Plan::of(path, &mut KinematicSmoothing::new(path.start(), settings))
 }

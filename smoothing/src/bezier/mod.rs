@@ -14,8 +14,7 @@ use crate::leg::Dwell;
 use crate::merge::{MERGE_SHARE, Vertex};
 use course::Course;
 use toolglide_kinematics::{
-    Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
-    check_contact,
+    Intake, Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
 };
 
 /// Plans corners of curvature-optimal quintics while the path is being read.
@@ -34,9 +33,7 @@ use toolglide_kinematics::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct BezierSmoothing<const N: usize> {
-    position: Vector<N>,
-    index: u32,
-    finished: bool,
+    intake: Intake<N>,
     arc: Option<(Chords<N>, Move<N>, u32)>,
     course: Box<Course<N>>,
 }
@@ -46,9 +43,7 @@ impl<const N: usize> BezierSmoothing<N> {
     #[must_use]
     pub fn new(start: Vector<N>, limits: Limits<N>) -> Self {
         Self {
-            position: start,
-            index: 0,
-            finished: false,
+            intake: Intake::new(start),
             arc: None,
             course: Box::new(Course::new(start, limits)),
         }
@@ -67,7 +62,7 @@ impl<const N: usize> BezierSmoothing<N> {
                 if step.stops() {
                     self.course.rest();
                 }
-                if self.finished {
+                if self.intake.is_closed() {
                     self.course.close();
                 }
             }
@@ -81,7 +76,7 @@ impl<const N: usize> BezierSmoothing<N> {
             bulge,
             feedrate: step.feedrate().speed(),
             tolerance: step.tolerance(),
-            serves: serving(index),
+            serves: Serves::one(index),
             next: 0,
         });
     }
@@ -89,14 +84,8 @@ impl<const N: usize> BezierSmoothing<N> {
 
 impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
-        let index = self.index;
-        if self.finished {
-            return Err(PlanError::Finished { index });
-        }
-        check_contact(next, self.position).map_err(|reason| PlanError::Path { index, reason })?;
-        self.index = index.checked_add(1).ok_or(PlanError::TooMany { index })?;
+        let index = self.intake.take(next)?;
         while self.advance_arc() {}
-        self.position = next.end(self.position);
         match next.path() {
             Path::Line { end } => {
                 self.take_point(next, index, *end, 0.0);
@@ -110,8 +99,8 @@ impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
             }
             Path::Dwell { duration } => self.course.dwell(Dwell {
                 duration: *duration,
-                serves: serving(index),
-                end: self.position,
+                serves: Serves::one(index),
+                end: self.intake.end(),
             }),
             _ => {}
         }
@@ -119,11 +108,8 @@ impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
     }
 
     fn finish(&mut self) -> Result<(), PlanError> {
-        if !self.finished {
-            self.finished = true;
-            if self.arc.is_none() {
-                self.course.close();
-            }
+        if self.intake.close() && self.arc.is_none() {
+            self.course.close();
         }
         Ok(())
     }
@@ -148,24 +134,5 @@ pub fn plan_bezier<const N: usize>(
     path: &Toolpath<N>,
     limits: &Limits<N>,
 ) -> Result<Plan<N>, PlanError> {
-    let mut planner = BezierSmoothing::new(path.start(), *limits);
-    let mut plan = Plan::starting_at(path.start());
-    for step in path.moves() {
-        planner.push(step)?;
-        while let Some(piece) = planner.pull() {
-            plan.push(piece);
-        }
-    }
-    planner.finish()?;
-    while let Some(piece) = planner.pull() {
-        plan.push(piece);
-    }
-    Ok(plan)
-}
-
-fn serving(index: u32) -> Serves {
-    Serves {
-        first: index,
-        last: index,
-    }
+    Plan::of(path, &mut BezierSmoothing::new(path.start(), *limits))
 }

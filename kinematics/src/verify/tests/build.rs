@@ -96,10 +96,7 @@ pub(super) fn push_phases<const N: usize>(
 pub(super) fn stop_and_go<const N: usize>(path: &Toolpath<N>, limits: &Limits<N>) -> Plan<N> {
     let mut plan = Plan::starting_at(path.start());
     for (step, mv) in path.moves().iter().zip(0..) {
-        let serves = Serves {
-            first: mv,
-            last: mv,
-        };
+        let serves = Serves::one(mv);
         let start = plan.end();
         if let Path::Dwell { duration } = step.path() {
             plan.push(Piece::new(
