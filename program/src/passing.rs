@@ -6,11 +6,25 @@ use crate::control::{Control, Keyword, glance};
 use crate::error::Fault;
 use crate::flow::Flow;
 use crate::flow_error::FlowError;
+use crate::reason::Reason;
 use crate::recording::{LONGEST_RECORDING, Recording};
 use std::io::BufRead;
 use std::sync::Arc;
 
 impl<R: BufRead> Flow<R> {
+    /// Goes to the next line of the recording that is running, or of the file; false at its end.
+    fn next_within(&mut self) -> Result<bool, Reason> {
+        match self.frames.last_mut() {
+            Some(frame) if frame.next < frame.end => {
+                self.current = Some((Arc::clone(&frame.recording), frame.next));
+                frame.next += 1;
+                Ok(true)
+            }
+            Some(_) => Ok(false),
+            None => self.lines.advance(),
+        }
+    }
+
     /// Passes over lines until one of `ends` with the label of `control`, which is then the line
     /// being run.
     pub(crate) fn skip(
@@ -21,22 +35,13 @@ impl<R: BufRead> Flow<R> {
     ) -> Result<Keyword, Fault> {
         let opening = self.here();
         loop {
-            let more = match self.frames.last_mut() {
-                Some(frame) if frame.next < frame.end => {
-                    self.current = Some((Arc::clone(&frame.recording), frame.next));
-                    frame.next += 1;
-                    self.step().map_err(|reason| control.because(reason))?;
-                    true
-                }
-                Some(_) => false,
-                None => self
-                    .lines
-                    .advance()
-                    .map_err(|reason| control.because(reason))?,
-            };
-            if !more {
+            let because = |reason| control.because(reason);
+            if !self.next_within().map_err(because)? {
                 self.current = Some(opening);
                 return Err(control.not_closed(closing));
+            }
+            if !self.frames.is_empty() {
+                self.step().map_err(because)?;
             }
             if let Some(keyword) = glance(self.text(), &control.label)
                 && ends.contains(&keyword)
@@ -67,19 +72,8 @@ impl<R: BufRead> Flow<R> {
         let opening = self.here();
         let mut fits = !with_first || recording.push(self.text());
         loop {
-            let more = match self.frames.last_mut() {
-                Some(frame) if frame.next < frame.end => {
-                    self.current = Some((Arc::clone(&frame.recording), frame.next));
-                    frame.next += 1;
-                    true
-                }
-                Some(_) => false,
-                None => self
-                    .lines
-                    .advance()
-                    .map_err(|reason| control.because(reason))?,
-            };
-            if !more {
+            let more = self.next_within();
+            if !more.map_err(|reason| control.because(reason))? {
                 self.current = Some(opening);
                 return Err(control.not_closed(end.name()));
             }

@@ -1,8 +1,8 @@
-//! Lenient reading: what moves no axis becomes a warning, and nothing else does.
+//! What moves no axis becomes a warning: everywhere in lenient reading, words of printers always.
 
 mod common;
 
-use common::{FILE, lenient, refusal_with, settings, try_read};
+use common::{FILE, lenient, refusal, refusal_with, settings, try_read};
 use toolglide_kinematics::Vector;
 use toolglide_program::{MOST_WARNINGS, Notice, Program, Reason};
 
@@ -95,4 +95,22 @@ fn the_number_of_warnings_kept_is_bounded() {
         .iter()
         .all(|warning| matches!(warning.notice(), Notice::Skipped(_)));
     assert!(all_skipped, "skipped");
+}
+
+#[test]
+fn words_of_printers_are_skipped_with_one_warning() {
+    let mut program = Program::new(
+        &b"M104 S200\nG92 E0\nG1 X1 E2 F60\nX2 E3"[..],
+        FILE,
+        settings(),
+    );
+    assert_eq!(program.by_ref().map(Result::unwrap).count(), 2, "moves");
+    let words: Vec<&str> = program
+        .warnings()
+        .iter()
+        .map(|one| one.place().word())
+        .collect();
+    assert_eq!(words, ["M104", "E0"], "warnings");
+    let (.., reason) = refusal("M201 X1");
+    assert!(matches!(reason, Reason::UnknownCode { .. }), "{reason}");
 }

@@ -91,24 +91,27 @@ fn sampling_never_allocates() {
     assert_eq!(counted.count_total, 0, "{counted:?}");
 }
 
-/// Allocations of pushing and pulling a path after construction.
-fn allocations(path: &Toolpath<3>, settings: &Settings<3>) -> u64 {
-    let mut planner = KinematicSmoothing::new(path.start(), settings);
-    let mut pieces = 0_u64;
-    let mut count = |planner: &mut KinematicSmoothing<3>| {
+/// Pushes a whole path, pulls after each push, and counts the pieces.
+fn count_pieces<const N: usize>(planner: &mut impl MotionPlanner<N>, path: &Toolpath<N>) -> u64 {
+    let mut pieces = 0;
+    for step in path.moves().iter().map(Some).chain([None]) {
+        match step {
+            Some(step) => planner.push(step).unwrap(),
+            None => planner.finish().unwrap(),
+        }
         while let Some(piece) = planner.pull() {
             black_box(piece);
             pieces += 1;
         }
-    };
-    let counted = measure(|| {
-        for step in path.moves() {
-            planner.push(step).unwrap();
-            count(&mut planner);
-        }
-        planner.finish().unwrap();
-        count(&mut planner);
-    });
+    }
+    pieces
+}
+
+/// Allocations of pushing and pulling a path after construction.
+fn allocations(path: &Toolpath<3>, settings: &Settings<3>) -> u64 {
+    let mut planner = KinematicSmoothing::new(path.start(), settings);
+    let mut pieces = 0_u64;
+    let counted = measure(|| pieces = count_pieces(&mut planner, path));
     assert!(pieces > 0, "nothing was planned");
     counted.count_total
 }
@@ -190,18 +193,7 @@ fn planning_filtered_pulses_and_filtering_ticks_allocates_nothing() {
             .unwrap();
         let mut planner = toolglide_fir::FirInterpolation::new(path.start(), &settings);
         let mut pieces = 0_u64;
-        let counted = measure(|| {
-            for step in path.moves().iter().map(Some).chain([None]) {
-                match step {
-                    Some(step) => planner.push(step).unwrap(),
-                    None => planner.finish().unwrap(),
-                }
-                while let Some(piece) = planner.pull() {
-                    black_box(piece);
-                    pieces += 1;
-                }
-            }
-        });
+        let counted = measure(|| pieces = count_pieces(&mut planner, path));
         assert!(pieces > 1_000, "{pieces} pieces");
         assert_eq!(counted.count_total, 0, "{}: {counted:?}", method.name());
     }
@@ -221,18 +213,7 @@ fn optimal_allocations<const N: usize>(path: &Toolpath<N>, limits: Limits<N>, ef
         .with_effort(toolglide_optimal::Effort::new(effort).unwrap());
     let mut planner = toolglide_optimal::TimeOptimal::<N>::new(path.start(), &settings);
     let mut pieces = 0_u64;
-    let counted = measure(|| {
-        for step in path.moves().iter().map(Some).chain([None]) {
-            match step {
-                Some(step) => planner.push(step).unwrap(),
-                None => planner.finish().unwrap(),
-            }
-            while let Some(piece) = planner.pull() {
-                black_box(piece);
-                pieces += 1;
-            }
-        }
-    });
+    let counted = measure(|| pieces = count_pieces(&mut planner, path));
     let tally = planner.windows().unwrap();
     assert!(tally.windows > 10 && pieces > 1_000, "{tally:?}");
     counted.count_total

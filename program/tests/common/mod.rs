@@ -97,6 +97,18 @@ pub(crate) fn refusal(text: &str) -> (u64, u32, String, Reason) {
     refusal_with(text, settings())
 }
 
+/// Asserts place, word and reason of the refusal of a program.
+#[allow(unused_macros, reason = "each test file uses its share")]
+macro_rules! refuses {
+    ($text:expr, $line:expr, $column:expr, $word:expr, $reason:pat) => {
+        let (line, column, word, reason) = $crate::common::refusal($text);
+        let expected: &str = $word.as_ref();
+        let place = (line, column, word.as_str());
+        assert_eq!(place, ($line, $column, expected), "{:?}: {reason}", $text);
+        assert!(matches!(reason, $reason), "{:?}: {reason:?}", $text);
+    };
+}
+
 /// Whether a move is a dwell, and how long, s.
 pub(crate) fn dwell(step: &Move<3>) -> Option<f64> {
     match step.path() {

@@ -6,11 +6,11 @@
 use super::away::{Course, Space, approach, from_arc, from_segment};
 use super::route::{self, Route};
 use super::{FOUND_SLACK, MEETING_SLACK, PoseJudge, PoseViolation, STRAIGHT_SLACK};
+use crate::great_circle::angle_between;
 use crate::numeric::LIMIT_SLACK;
 use crate::pose::ToolPose;
 use crate::pose_leg::PosePath;
 use crate::pose_piece::{PosePiece, ToolPiece};
-use crate::verify::report::Peak;
 
 /// Lengths of an orientation may differ from 1 by this.
 const UNIT_SLACK: f64 = 1e-14;
@@ -79,10 +79,7 @@ impl PoseJudge<'_> {
             let tolerance = leg.tip_tolerance.length();
             let (value, time, place) =
                 (tip.bound * tolerance, begin + tip.at, route.place(tip.leg));
-            if tip.bound > report.tip_ratio.value {
-                report.tip_deviation = Peak { value, time, place };
-            }
-            report.tip_ratio.raise(tip.bound, time, place);
+            report.raise_tip(tip.bound, value, time, place);
             if value > tolerance * (1.0 + FOUND_SLACK) + MEETING_SLACK {
                 report.add(PoseViolation::TipDeviation {
                     value,
@@ -101,10 +98,7 @@ impl PoseJudge<'_> {
                 begin + turn.at,
                 route.place(turn.leg),
             );
-            if turn.bound > report.orientation_ratio.value {
-                report.orientation_deviation = Peak { value, time, place };
-            }
-            report.orientation_ratio.raise(turn.bound, time, place);
+            report.raise_orientation(turn.bound, value, time, place);
             if value > tolerance * (1.0 + FOUND_SLACK) + MEETING_SLACK {
                 report.add(PoseViolation::OrientationDeviation {
                     value,
@@ -114,21 +108,34 @@ impl PoseJudge<'_> {
                 });
             }
         }
-        route.each_end(first.saturating_sub(1), last, |leg, end| {
-            let PosePath::Tool { tip, turn } = &leg.path else {
-                return;
-            };
-            let found = approach(duration, |time| (pose(time).tip() - tip[1]).norm());
-            if found.0 < end.tip.0 {
-                end.tip = (found.0, begin + found.1);
-            }
-            let found = approach(duration, |time| {
-                crate::great_circle::angle_between(&pose(time).orientation(), &turn.end())
+        self.approach_ends(pose, duration, first, last);
+    }
+
+    /// Notes how near the motion comes to the ends of the legs that it serves, and to the one before.
+    fn approach_ends(
+        &mut self,
+        pose: &mut dyn FnMut(f64) -> ToolPose,
+        duration: f64,
+        first: u32,
+        last: u32,
+    ) {
+        let begin = self.time;
+        self.route
+            .each_end(first.saturating_sub(1), last, |leg, end| {
+                let PosePath::Tool { tip, turn } = &leg.path else {
+                    return;
+                };
+                let found = approach(duration, |time| (pose(time).tip() - tip[1]).norm());
+                if found.0 < end.tip.0 {
+                    end.tip = (found.0, begin + found.1);
+                }
+                let found = approach(duration, |time| {
+                    angle_between(&pose(time).orientation(), &turn.end())
+                });
+                if found.0 < end.orientation.0 {
+                    end.orientation = (found.0, begin + found.1);
+                }
             });
-            if found.0 < end.orientation.0 {
-                end.orientation = (found.0, begin + found.1);
-            }
-        });
     }
 
     pub(super) fn straight(&self, first: u32, last: u32) -> bool {

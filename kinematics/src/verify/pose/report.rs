@@ -106,6 +106,22 @@ impl PoseReport {
             self.examples.push(violation);
         }
     }
+
+    /// Takes a share of the tolerance of the tip, and the deviation in mm that it is, into the peaks.
+    pub(super) fn raise_tip(&mut self, share: f64, value: f64, time: f64, place: Place) {
+        if share > self.tip_ratio.value {
+            self.tip_ratio.raise(share, time, place);
+            self.tip_deviation = Peak { value, time, place };
+        }
+    }
+
+    /// The same for the orientation, in rad.
+    pub(super) fn raise_orientation(&mut self, share: f64, value: f64, time: f64, place: Place) {
+        if share > self.orientation_ratio.value {
+            self.orientation_ratio.raise(share, time, place);
+            self.orientation_deviation = Peak { value, time, place };
+        }
+    }
 }
 
 /// Which derivative of the position of an axis.
