@@ -138,13 +138,11 @@ impl Run<'_> {
         }
     }
 
-    fn propose(&self, blocks: &[PoseBlock], overlaps: &[f64], rule: Rule) -> Option<Proposal> {
+    /// Which corners are passed without a wait, at less speed.
+    fn gentle(&self, blocks: &[PoseBlock], overlaps: &[f64], rule: Rule) -> Vec<bool> {
         let delay = self.chain.total_delay();
         let gone = self.chain.position(0.5 * delay);
-        let mut durations: Vec<f64> = blocks.iter().map(|block| block.duration).collect();
-        let mut overlaps = overlaps.to_vec();
-        let gentle: Vec<bool> = self
-            .corners
+        self.corners
             .iter()
             .enumerate()
             .map(|(index, corner)| {
@@ -170,7 +168,15 @@ impl Run<'_> {
                     }
                 }
             })
-            .collect();
+            .collect()
+    }
+
+    fn propose(&self, blocks: &[PoseBlock], overlaps: &[f64], rule: Rule) -> Option<Proposal> {
+        let delay = self.chain.total_delay();
+        let gone = self.chain.position(0.5 * delay);
+        let mut durations: Vec<f64> = blocks.iter().map(|block| block.duration).collect();
+        let mut overlaps = overlaps.to_vec();
+        let gentle = self.gentle(blocks, &overlaps, rule);
         for (index, corner) in self.corners.iter().enumerate() {
             if gentle[index] {
                 overlaps[index] = delay;

@@ -8,7 +8,7 @@
 
 use crate::block::PoseBlock;
 use toolglide_fir::FilterChain;
-use toolglide_kinematics::{Vector, angle_between};
+use toolglide_kinematics::Vector;
 
 /// A corner, as its reach: how far from it both moves may be at the same time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,14 +151,5 @@ fn orientation_reach(tolerance: f64, turn: f64) -> f64 {
         sine.asin()
     } else {
         f64::INFINITY
-    }
-}
-
-/// Angle about which the axis of the turn turns, rad.
-impl PoseCorner {
-    /// Angle between the axes about which the tool turns before and after, rad.
-    #[must_use]
-    pub fn axis_angle(before: &PoseBlock, after: &PoseBlock) -> f64 {
-        angle_between(&before.turn.axis(), &after.turn.axis())
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! Source: chapter 5 of the dissertation, with closed forms instead of its quartics. [`PosePlanner`]
 //! takes legs of poses and gives pieces of motion; [`PoseMethod`] says how corners are taken. This
-//! crate knows machines by their inverse kinematics only, and no program.
+//! crate knows machines by forward and inverse kinematics only, and no program.
 
 mod accumulate;
 mod block;

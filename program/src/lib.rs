@@ -29,8 +29,8 @@
 //!
 //! # Tool poses
 //!
-//! [`Poses`] reads programs of machines with rotary axes, cutter location files, and a first cut of
-//! the language of Sinumerik 840D; [`Language`] tells them apart.
+//! [`Poses`] reads programs of machines with rotary axes, cutter location files, and the language of
+//! Sinumerik 840D as far as `docs/programs.md` tells; [`Language`] tells them apart.
 //!
 //! # Refused
 //!

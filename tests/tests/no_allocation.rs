@@ -193,7 +193,7 @@ fn planning_filtered_pulses_and_filtering_ticks_allocates_nothing() {
             .unwrap();
         let mut planner = toolglide_fir::FirInterpolation::new(path.start(), &settings);
         let mut pieces = 0_u64;
-        let counted = measure(|| pieces = count_pieces(&mut planner, path));
+        let counted = measure(|| pieces = count_pieces(&mut planner, &path));
         assert!(pieces > 1_000, "{pieces} pieces");
         assert_eq!(counted.count_total, 0, "{}: {counted:?}", method.name());
     }

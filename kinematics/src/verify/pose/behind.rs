@@ -76,6 +76,11 @@ impl PoseJudge<'_> {
             }
             PosePiece::Axes(moved) => self.follower.axes(moved, &mut take),
         }
+        self.judge_travel(place);
+    }
+
+    /// Says which axis has left its travel, if any has.
+    fn judge_travel(&mut self, place: Place) {
         for (axis, peaks) in self.follower.axes.iter().zip(&self.report.axes) {
             if let Some((low, high)) = axis.travel
                 && (peaks.lowest < low - MEETING_SLACK || peaks.highest > high + MEETING_SLACK)
@@ -93,7 +98,7 @@ impl PoseJudge<'_> {
                 };
                 self.report.add(PoseViolation::Unreachable {
                     reason: reason.to_string(),
-                    time: begin,
+                    time: self.time,
                     place,
                 });
                 break;
