@@ -23,24 +23,16 @@ pub(crate) struct Chords<const N: usize> {
     outward: f64,
 }
 
-/// Largest radius of an arc, with what its change adds: the second derivative of the point after the
-/// angle.
-fn bending<const N: usize>(arc: &Arc<N>) -> f64 {
-    let (start_radius, end_radius) = arc.radii();
-    let growth = (end_radius - start_radius).abs() / arc.sweep().abs();
-    start_radius.max(end_radius) + 2.0 * growth
-}
-
 /// How far an arc is from its own chord at most: second derivative times square over eight.
 pub(crate) fn bulge_of<const N: usize>(arc: &Arc<N>) -> f64 {
-    0.125 * bending(arc) * arc.sweep() * arc.sweep()
+    0.125 * arc.bending() * arc.sweep() * arc.sweep()
 }
 
 impl<const N: usize> Chords<N> {
     pub(crate) fn new(arc: Arc<N>, tolerance: f64) -> Self {
         let (start_radius, end_radius) = arc.radii();
         let (sweep, radius) = (arc.sweep().abs(), start_radius.min(end_radius));
-        let bending = bending(&arc);
+        let bending = arc.bending();
         let angle = (8.0 * SAGITTA_SHARE * tolerance / bending)
             .sqrt()
             .min(FRAC_PI_4);

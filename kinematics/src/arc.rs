@@ -158,6 +158,15 @@ impl<const N: usize> Arc<N> {
         (self.start_radius, self.end_radius)
     }
 
+    /// Largest second derivative of the point after the angle, mm: the larger radius, with what its
+    /// change adds. A chord over a small angle lies off the arc by an eighth of this times the square of
+    /// the angle at the most.
+    #[must_use]
+    pub fn bending(&self) -> f64 {
+        let growth = (self.end_radius - self.start_radius).abs() / self.sweep.abs();
+        self.start_radius.max(self.end_radius) + 2.0 * growth
+    }
+
     /// Signed angle of the whole turn, rad: positive from the first axis of the plane to the
     /// second, more than a full turn where whole circles were added.
     #[must_use]

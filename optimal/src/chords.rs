@@ -27,11 +27,9 @@ pub(crate) struct Chords<const N: usize> {
 impl<const N: usize> Chords<N> {
     /// Chords that lie off the arc by a share of the `tolerance` at the most, mm.
     pub(crate) fn new(arc: Arc<N>, tolerance: f64) -> Self {
-        let (start_radius, end_radius) = arc.radii();
         let sweep = arc.sweep().abs();
-        let growth = (end_radius - start_radius).abs() / sweep;
-        let curvature = start_radius.max(end_radius) + 2.0 * growth;
-        let angle = (8.0 * CHORD_SHARE * tolerance / curvature)
+        let bending = arc.bending();
+        let angle = (8.0 * CHORD_SHARE * tolerance / bending)
             .sqrt()
             .min(FRAC_PI_2);
         let parts = (sweep / WAYPOINT_SPACING).floor() + 1.0;
@@ -41,7 +39,7 @@ impl<const N: usize> Chords<N> {
             arc,
             count,
             next: 1.0,
-            bulge: 0.125 * angle * angle * curvature,
+            bulge: 0.125 * angle * angle * bending,
         }
     }
 

@@ -9,7 +9,7 @@
 //! far side is near enough. Not here: motion.
 
 use toolglide_kinematics::numeric::{LEAST_SHARE, SHORTEST_LENGTH};
-use toolglide_kinematics::{Piece, Sample, Serves, Vector};
+use toolglide_kinematics::{Pause, Serves, Vector};
 
 /// Share of the tolerance that joining may use: the motion keeps three quarters of it for itself, and
 /// fine chords of a curve still become runs of some thirty.
@@ -42,33 +42,6 @@ pub(crate) struct Run<const N: usize> {
     /// Largest radius of the balls at its start and at its end, mm.
     pub(crate) balls: [f64; 2],
     pub(crate) serves: Serves,
-}
-
-/// Moves that led nowhere, or a pause.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pause<const N: usize> {
-    pub(crate) duration: f64,
-    pub(crate) serves: Serves,
-    pub(crate) end: Vector<N>,
-}
-
-impl<const N: usize> Pause<N> {
-    /// The pause as motion, which has come to rest at `at`.
-    pub(crate) fn piece(&self, at: Vector<N>) -> Piece<N> {
-        Piece::new(&Sample::at_rest(at), self.duration, self.end, self.serves)
-    }
-
-    /// Two pauses, one after the other.
-    pub(crate) fn then(self, next: Self) -> Self {
-        Self {
-            duration: self.duration + next.duration,
-            serves: Serves {
-                first: self.serves.first,
-                last: next.serves.last,
-            },
-            end: next.end,
-        }
-    }
 }
 
 /// Moves that led nowhere and wait for a run to serve them.

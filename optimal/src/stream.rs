@@ -7,12 +7,12 @@
 use crate::chords::Chords;
 use crate::event::Event;
 use crate::horizon::Horizon;
-use crate::runs::{Joiner, Pause, Run, Vertex};
+use crate::runs::{Joiner, Run, Vertex};
 use crate::settings::Settings;
 use crate::span::{Fineness, Part, cut};
 use crate::window::WindowSolver;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Move, Path, Serves, Vector, WindowTally};
+use toolglide_kinematics::{Limits, Move, Path, Pause, Serves, Vector, WindowTally};
 
 /// Events that are kept room for: those of a window and a few stops.
 const EVENTS: usize = 2048;

@@ -19,18 +19,16 @@ pub(crate) struct Chords<const N: usize> {
 impl<const N: usize> Chords<N> {
     /// Chords that lie off the arc by `deviation` at the most.
     pub(crate) fn new(arc: Arc<N>, deviation: f64) -> Self {
-        let (start_radius, end_radius) = arc.radii();
         let sweep = arc.sweep().abs();
-        let growth = (end_radius - start_radius).abs() / sweep;
-        let curvature = start_radius.max(end_radius) + 2.0 * growth;
-        let angle = (8.0 * deviation / curvature).sqrt().min(FRAC_PI_2);
+        let bending = arc.bending();
+        let angle = (8.0 * deviation / bending).sqrt().min(FRAC_PI_2);
         let count = (sweep / angle).ceil().max(1.0);
         let angle = sweep / count;
         Self {
             arc,
             count,
             next: 1.0,
-            bulge: 0.125 * angle * angle * curvature,
+            bulge: 0.125 * angle * angle * bending,
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Source: the straight moves of section 3.3. Not here: how it comes about, see the merger.
 
-use toolglide_kinematics::{Piece, Sample, Serves, Tangential, Tolerance, Vector};
+use toolglide_kinematics::{Pause, Serves, Tangential, Tolerance, Vector};
 
 /// A straight stretch of path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub(crate) struct Leg<const N: usize> {
     /// Whether the motion rests at its end.
     pub(crate) stop: bool,
     /// A pause at its end.
-    pub(crate) dwell: Option<Dwell<N>>,
+    pub(crate) dwell: Option<Pause<N>>,
 }
 
 impl<const N: usize> Leg<N> {
@@ -38,32 +38,5 @@ impl<const N: usize> Leg<N> {
     /// Whether the next leg begins with a move of the path.
     pub(crate) fn ends_before(&self, next: &Self) -> bool {
         self.serves.last < next.serves.first
-    }
-}
-
-/// A pause at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Dwell<const N: usize> {
-    pub(crate) duration: f64,
-    pub(crate) serves: Serves,
-    pub(crate) end: Vector<N>,
-}
-
-impl<const N: usize> Dwell<N> {
-    /// The pause as motion, which has come to rest at `at`.
-    pub(crate) fn piece(&self, at: Vector<N>) -> Piece<N> {
-        Piece::new(&Sample::at_rest(at), self.duration, self.end, self.serves)
-    }
-
-    /// Two pauses, one after the other.
-    pub(crate) fn then(self, next: Self) -> Self {
-        Self {
-            duration: self.duration + next.duration,
-            serves: Serves {
-                first: self.serves.first,
-                last: next.serves.last,
-            },
-            end: next.end,
-        }
     }
 }

@@ -11,9 +11,9 @@
 //! moves together than for both added, and the reciprocals are norms of the move, so they are no
 //! larger for the straight line than for both moves added. Not here: motion.
 
-use crate::leg::{Dwell, Leg};
+use crate::leg::Leg;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
-use toolglide_kinematics::{Limits, Serves, Tolerance, Vector};
+use toolglide_kinematics::{Limits, Pause, Serves, Tolerance, Vector};
 
 /// Share of the tolerance that merging and chords may use. On a curve of radius `R`, chords of length
 /// `c` lie `c^2 / 8R` off and corners that fill the chords cut `c^2 / 12R`: three parts to two.
@@ -182,10 +182,10 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Moves that led nowhere and that no leg has served.
-    pub(crate) fn take_carried(&mut self) -> Option<Dwell<N>> {
+    pub(crate) fn take_carried(&mut self) -> Option<Pause<N>> {
         let carried = self.carried.take()?;
         self.first = carried.next;
-        Some(Dwell {
+        Some(Pause {
             duration: 0.0,
             serves: carried.serves,
             end: carried.end,

@@ -5,12 +5,11 @@
 
 use crate::chords::Chords;
 use crate::corners::Corners;
-use crate::leg::Dwell;
 use crate::merge::Vertex;
 use crate::method::{Method, Settings};
 use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
-    Arc, Intake, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
+    Arc, Intake, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath, Vector,
 };
 
 /// Plans kinematic corner smoothing while the path is being read.
@@ -149,7 +148,7 @@ impl<const N: usize> Route<N> {
         }
     }
 
-    fn dwell(&mut self, pause: Dwell<N>) {
+    fn dwell(&mut self, pause: Pause<N>) {
         match self {
             Self::Corners(corners) => corners.dwell(pause),
             Self::Stretches(stretches) => stretches.dwell(pause),
@@ -201,7 +200,7 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
                 self.arc = Some((chords, *next, index));
             }
             Path::Dwell { duration } => {
-                self.route.dwell(Dwell {
+                self.route.dwell(Pause {
                     duration: *duration,
                     serves: Serves::one(index),
                     end: self.intake.end(),

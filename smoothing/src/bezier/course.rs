@@ -5,13 +5,13 @@
 //! stop always fits is its promise. Not here: the corners themselves.
 
 use super::bend::{Bend, PIECES};
-use crate::leg::{Dwell, Leg};
+use crate::leg::Leg;
 use crate::merge::{Merger, ROUNDING_SHARE, Vertex};
 use crate::pieces::{MOST_PIECES, corner_between, unroll_leg};
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Piece, Serves, Vector};
+use toolglide_kinematics::{Limits, Pause, Piece, Serves, Vector};
 
 /// Corners that the look-ahead window sees.
 const WINDOW: usize = 256;
@@ -71,7 +71,7 @@ impl<const N: usize> Course<N> {
     }
 
     /// The motion must pause where the path has come to.
-    pub(super) fn dwell(&mut self, pause: Dwell<N>) {
+    pub(super) fn dwell(&mut self, pause: Pause<N>) {
         self.rest();
         let pause = match self.merger.take_carried() {
             Some(carried) => carried.then(pause),
@@ -105,7 +105,7 @@ impl<const N: usize> Course<N> {
         }
     }
 
-    fn pause(&mut self, pause: Dwell<N>) {
+    fn pause(&mut self, pause: Pause<N>) {
         match &mut self.pending {
             Some(last) => {
                 last.dwell = Some(match last.dwell {

@@ -10,11 +10,11 @@ mod course;
 mod quintic;
 
 use crate::chords::Chords;
-use crate::leg::Dwell;
 use crate::merge::{MERGE_SHARE, Vertex};
 use course::Course;
 use toolglide_kinematics::{
-    Intake, Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath, Vector,
+    Intake, Limits, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath,
+    Vector,
 };
 
 /// Plans corners of curvature-optimal quintics while the path is being read.
@@ -97,7 +97,7 @@ impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
                 let chords = Chords::new(*arc, MERGE_SHARE * next.tolerance().length());
                 self.arc = Some((chords, *next, index));
             }
-            Path::Dwell { duration } => self.course.dwell(Dwell {
+            Path::Dwell { duration } => self.course.dwell(Pause {
                 duration: *duration,
                 serves: Serves::one(index),
                 end: self.intake.end(),

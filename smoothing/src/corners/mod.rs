@@ -8,7 +8,7 @@ mod offer;
 mod unroll;
 
 use crate::lattice::{Choice, Lattice};
-use crate::leg::{Dwell, Leg};
+use crate::leg::Leg;
 use crate::merge::{MERGE_SHARE, Merger, ROUNDING_SHARE, Vertex};
 use crate::method::{Method, Settings};
 use crate::pieces::{MOST_PIECES, corner_between};
@@ -17,7 +17,7 @@ use crate::turn::TurnShape;
 use crate::window::{Link, Window};
 use offer::overlapping_of;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Piece, Tolerance, Vector};
+use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 
 /// Plans the corners of a stream of vertices, from rest to rest.
 #[derive(Clone, Debug)]
@@ -122,7 +122,7 @@ impl<const N: usize> Corners<N> {
     }
 
     /// The motion must pause where the path has come to.
-    pub(crate) fn dwell(&mut self, pause: Dwell<N>) {
+    pub(crate) fn dwell(&mut self, pause: Pause<N>) {
         self.rest();
         let pause = match self.merger.take_carried() {
             Some(carried) => carried.then(pause),
@@ -131,7 +131,7 @@ impl<const N: usize> Corners<N> {
         self.pause(pause);
     }
 
-    fn pause(&mut self, pause: Dwell<N>) {
+    fn pause(&mut self, pause: Pause<N>) {
         match &mut self.pending {
             Some(last) => {
                 last.dwell = Some(match last.dwell {

@@ -9,12 +9,12 @@ mod travel;
 mod vertices;
 
 use crate::corners::Corners;
-use crate::leg::{Dwell, Leg};
+use crate::leg::Leg;
 use crate::merge::{Merger, Vertex};
 use crate::method::Settings;
 use crate::superposed::Superposer;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Piece, Tolerance, Vector};
+use toolglide_kinematics::{Pause, Piece, Tolerance, Vector};
 use vertices::Vertices;
 
 /// Share of the tolerance that cleaning the path may use: enough for rounding of programs and for the
@@ -71,7 +71,7 @@ pub(crate) struct Stretches<const N: usize> {
 enum Event<const N: usize> {
     Leg(Leg<N>),
     Rest,
-    Dwell(Dwell<N>),
+    Dwell(Pause<N>),
     Close,
 }
 
@@ -145,7 +145,7 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// The motion must pause where the path has come to.
-    pub(crate) fn dwell(&mut self, pause: Dwell<N>) {
+    pub(crate) fn dwell(&mut self, pause: Pause<N>) {
         self.finish_leg();
         self.take(Event::Rest);
         let pause = match self.merger.take_carried() {
