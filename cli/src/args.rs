@@ -51,7 +51,7 @@ pub(crate) enum Command {
 /// The program, and the limits that its motion must keep.
 #[derive(Debug, Args)]
 pub(crate) struct JobArgs {
-    /// Part program (RS274/NGC, or tool poses in .apt, .cls or .ncl); - reads standard input.
+    /// Part program (RS274/NGC; for plan and verify also tool poses in .apt, .cls or .ncl); - reads standard input.
     #[arg(value_name = "PROGRAM")]
     pub(crate) program: PathBuf,
     /// Registered machine, or machine file.

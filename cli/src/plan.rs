@@ -65,7 +65,7 @@ pub(crate) fn moves<const N: usize>(
 /// Tells what the reader of the program wants known.
 pub(crate) fn warn<R: BufRead>(program: &Program<R>, err: &mut dyn Write) {
     for warning in program.warnings() {
-        let _ = writeln!(err, "{warning}");
+        let _ = writeln!(err, "warning: {warning}");
     }
     if program.more_warnings() > 0 {
         let _ = writeln!(err, "and {} more warnings", program.more_warnings());

@@ -162,9 +162,7 @@ impl Shown for Summary {
                 self.machine
             ),
         };
-        let period = self.period_s.map_or_else(String::new, |period| {
-            format!(" every {} ms", shortest(1e3 * period))
-        });
+        let period = every(self.period_s);
         let average = if self.cycle_time_s > 0.0 {
             self.path_length_mm / self.cycle_time_s
         } else {
@@ -220,9 +218,16 @@ pub(crate) fn clock(seconds: f64) -> String {
 }
 
 /// A number without the digits that its rounding brought, such as 1 for 1e3 times 0.001.
-fn shortest(value: f64) -> f64 {
+pub(crate) fn shortest(value: f64) -> f64 {
     let rounded = (value * 1e9).round() / 1e9;
     if rounded > 0.0 { rounded } else { value }
+}
+
+/// How often there is a set-point, where that is known.
+pub(crate) fn every(period_s: Option<f64>) -> String {
+    period_s.map_or_else(String::new, |period| {
+        format!(" every {} ms", shortest(1e3 * period))
+    })
 }
 
 /// Violations, the worst first, as text.

@@ -96,3 +96,19 @@ fn a_long_motion_makes_no_long_picture() {
         "bounded"
     );
 }
+
+#[test]
+fn limits_told_in_words_have_the_unit_of_their_chart() {
+    let folder = Folder::new();
+    let program = folder.write("corner.ngc", "G64 P0.02\nG1 X50 F6000\nY50\n");
+    let plot = folder.name("motion.svg");
+    let filters = ["--method", "fir", "--fir", "0.05,0.03"];
+    let run = toolglide(&[&["plan", &program, "--plot", &plot], &filters[..]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let svg = folder.read("motion.svg");
+    assert!(
+        svg.contains("Jerk, m/s³") && svg.contains("limit ±200 m/s³"),
+        "{}",
+        run.out
+    );
+}

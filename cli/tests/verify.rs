@@ -190,3 +190,20 @@ fn the_program_is_read_ahead_however_many_moves_a_row_passes() {
     let run = toolglide(&["verify", &program, &output]);
     assert_eq!(run.code, 0, "{}", run.err);
 }
+
+#[test]
+fn set_points_of_tool_poses_are_as_near_to_the_path_as_their_plan() {
+    let folder = Folder::new();
+    let program = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/poses/star.apt");
+    let rows = folder.name("rows.csv");
+    let on = ["--machine", "table-ac", "--tolerance", "0.2", "--json"];
+    let plan = toolglide(&[&["plan", program, "-o", &rows], &on[..]].concat());
+    let verdict = toolglide(&[&["verify", program, &rows], &on[..]].concat());
+    assert_eq!((plan.code, verdict.code), (0, 0), "{}", verdict.err);
+    let [planned, judged]: [Value; 2] =
+        [plan, verdict].map(|run| serde_json::from_str(&run.out).unwrap());
+    for share in ["tip_deviation_share", "orientation_deviation_share"] {
+        let [planned, judged] = [&planned, &judged].map(|summary| summary[share].as_f64().unwrap());
+        assert!(judged <= 1.001 * planned, "{share}: {judged} of {planned}");
+    }
+}

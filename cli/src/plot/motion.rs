@@ -239,7 +239,7 @@ fn axes<const N: usize>(
         .filter(|&(axis, _)| plot.moves(axis))
         .map(|(_, (name, color))| (name.as_str(), color, false))
         .collect();
-    let told = told_limits(panel, &names, &drawn, alike);
+    let told = told_limits(panel, &names, &drawn, alike, (scale, unit));
     if drawn.iter().any(|&drawn| drawn) {
         let color = if alike {
             color::BOUND
@@ -254,11 +254,18 @@ fn axes<const N: usize>(
     chart.draw_legend(canvas, &entries);
 }
 
-/// Limits that are too far away to be drawn, in words.
-fn told_limits(panel: &Panel<'_>, names: &[String], drawn: &[bool], alike: bool) -> String {
+/// Limits that are too far away to be drawn, in words, in the unit of the chart.
+fn told_limits(
+    panel: &Panel<'_>,
+    names: &[String],
+    drawn: &[bool],
+    alike: bool,
+    (scale, unit): (f64, &str),
+) -> String {
+    let shown = |limit: f64| crate::summary::shortest(limit * scale);
     if alike {
         return match (drawn.first(), panel.limits.first()) {
-            (Some(false), Some(limit)) => format!("limit ±{limit} {}", panel.unit),
+            (Some(false), Some(limit)) => format!("limit ±{} {unit}", shown(*limit)),
             _ => String::new(),
         };
     }
@@ -267,11 +274,11 @@ fn told_limits(panel: &Panel<'_>, names: &[String], drawn: &[bool], alike: bool)
         .zip(drawn)
         .zip(panel.limits)
         .filter(|((_, drawn), _)| !**drawn)
-        .map(|((name, _), limit)| format!("{name} ±{limit}"))
+        .map(|((name, _), limit)| format!("{name} ±{}", shown(*limit)))
         .collect();
     if told.is_empty() {
         String::new()
     } else {
-        format!("limits {} {}", told.join(", "), panel.unit)
+        format!("limits {} {unit}", told.join(", "))
     }
 }

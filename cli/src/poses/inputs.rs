@@ -228,7 +228,7 @@ impl Legs<'_> {
     /// Tells what the reader of the program wants known.
     pub(crate) fn warn(&self, err: &mut dyn std::io::Write) {
         for warning in self.program.warnings() {
-            let _ = writeln!(err, "{warning}");
+            let _ = writeln!(err, "warning: {warning}");
         }
         if self.program.more_warnings() > 0 {
             let _ = writeln!(err, "and {} more warnings", self.program.more_warnings());

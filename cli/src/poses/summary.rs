@@ -4,7 +4,7 @@
 
 use crate::setup::Setup;
 use crate::shown::{Shown, quoted, verdict};
-use crate::summary::clock;
+use crate::summary::{clock, every};
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_fiveaxis::Slowdown;
@@ -159,6 +159,8 @@ impl PoseSummary {
             "axis         velocity, /s        acceleration, /s²       jerk, /s³               from, to\n",
         );
         for axis in &self.axes {
+            // Adding zero takes the sign from what is rounded to nothing.
+            let hundredths = |value: f64| (100.0 * value).round() / 100.0 + 0.0;
             let cell = |peak: f64, limit: f64| format!("{peak:.1}  {:.1} %", 100.0 * peak / limit);
             let _ = writeln!(
                 text,
@@ -167,8 +169,8 @@ impl PoseSummary {
                 cell(axis.peak_velocity, axis.velocity_limit),
                 cell(axis.peak_acceleration, axis.acceleration_limit),
                 cell(axis.peak_jerk, axis.jerk_limit),
-                axis.lowest,
-                axis.highest,
+                hundredths(axis.lowest),
+                hundredths(axis.highest),
             );
         }
         text.push('\n');
@@ -204,7 +206,7 @@ impl Shown for PoseSummary {
         let _ = write!(
             text,
             "{program}: {how}\n\n\
-             cycle time   {clock}  ({cycle:.3} s; {rows} set-points)\n\
+             cycle time   {clock}  ({cycle:.3} s; {rows} set-points{every})\n\
              path         {length:.3} mm and {angle:.2} degrees in {moves} moves from {blocks} blocks\n\
              feedrate     {fastest:.1} mm/s at most ({per_minute:.0} mm/min)\n\
              tool tip     {tip:.5} mm from the path, {tip_share:.1} % of the tolerance; \
@@ -215,6 +217,7 @@ impl Shown for PoseSummary {
             clock = clock(self.cycle_time_s),
             cycle = self.cycle_time_s,
             rows = self.setpoints,
+            every = every(self.period_s),
             length = self.path_length_mm,
             angle = self.path_angle_deg,
             moves = self.moves,

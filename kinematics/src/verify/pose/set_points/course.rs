@@ -24,7 +24,7 @@ impl PoseSetPointJudge<'_> {
         self.current = current;
         self.pass_ends(pose, slack);
         if self.current < self.legs.len() {
-            self.judge_shares(time, shares);
+            self.judge_shares(time, self.least_shares(shares, pose, at, slack));
             if let (Some(last), Some((before, _))) = (self.last, self.rows.iter().rev().nth(1)) {
                 let speed = (pose.tip() - last.tip()).norm() / (time - before);
                 self.report.peak_speed.raise(speed, time, self.place());
@@ -52,6 +52,31 @@ impl PoseSetPointJudge<'_> {
             }
         }
         best
+    }
+
+    /// The shares of the nearest of the legs that a row may be on: a leg is left as late as its
+    /// tolerances allow, but near a corner the next ones are nearer.
+    fn least_shares(
+        &self,
+        mut least: [f64; 2],
+        pose: &ToolPose,
+        at: &AxisVector,
+        slack: (f64, f64),
+    ) -> [f64; 2] {
+        let within = |shares: [f64; 2]| shares[0].max(shares[1]) <= 1.0;
+        let of_tool = |expected: &Expected| matches!(expected.leg.path, PosePath::Tool { .. });
+        if !within(least) || !of_tool(&self.legs[self.current]) {
+            return least;
+        }
+        let ahead = self.legs.iter().skip(self.current + 1).take(AHEAD);
+        for expected in ahead.take_while(|expected| of_tool(expected)) {
+            let shares = Self::shares(&expected.leg, pose, at, slack);
+            if !within(shares) {
+                break;
+            }
+            least = [least[0].min(shares[0]), least[1].min(shares[1])];
+        }
+        least
     }
 
     /// Notes how near the ends of legs are passed on the way from the row before.
