@@ -19,8 +19,12 @@ const KNOTS_TO_ANCHOR: u32 = 32;
 /// because time squared makes the rounding of the acceleration a length.
 const LONG_PIECE: f64 = 0.5;
 
-/// Time after which the clock is set back by as much, s: a power of two, so that subtracting it is
-/// exact, and short, so that times keep their digits.
+/// The same for pieces longer than so many times the shorter filter, whose jerk makes the rounding of
+/// knots an acceleration.
+const LONG_BESIDE_SHORT: f64 = 100.0;
+
+/// Time after which the clock is set back by a multiple of it, s: a power of two, so that subtracting
+/// it is exact, and short, so that times keep their digits.
 const CLOCK_SPAN: f64 = 16.0;
 
 /// A pulse under way.
@@ -183,10 +187,12 @@ impl<const N: usize> Sweep<N> {
         self.state.acceleration -= early;
         self.state.jerk = jerk;
         let next = self.taps.next_knot();
+        let lasts = next.min(self.horizon()) - self.time;
         if self.resting && next.is_infinite() {
             self.land();
         } else if self.since_anchor >= KNOTS_TO_ANCHOR
-            || next.min(self.horizon()) - self.time > LONG_PIECE * self.chain.total()
+            || lasts > LONG_PIECE * self.chain.total()
+            || lasts > LONG_BESIDE_SHORT * self.chain.short()
         {
             self.anchor();
         }
@@ -297,12 +303,13 @@ impl<const N: usize> Sweep<N> {
         if self.time < CLOCK_SPAN {
             return;
         }
-        self.time -= CLOCK_SPAN;
-        self.commanded -= CLOCK_SPAN;
-        self.taps.set_back(CLOCK_SPAN);
+        let span = (self.time / CLOCK_SPAN).floor() * CLOCK_SPAN;
+        self.time -= span;
+        self.commanded -= span;
+        self.taps.set_back(span);
         for pulse in &mut self.active {
-            pulse.begin -= CLOCK_SPAN;
-            pulse.end -= CLOCK_SPAN;
+            pulse.begin -= span;
+            pulse.end -= span;
         }
     }
 }

@@ -121,9 +121,12 @@ impl<const N: usize> Taps<N> {
         for step in &mut self.steps {
             step.time -= span;
         }
-        self.due -= span;
+        self.due = f64::INFINITY;
         for tap in &mut self.taps {
-            tap.due -= span;
+            // Found afresh, as exactly as the clock is now.
+            let next = self.steps.get(tap.next);
+            tap.due = next.map_or(f64::INFINITY, |step| step.time + tap.delay);
+            self.due = self.due.min(tap.due);
         }
     }
 }

@@ -185,3 +185,15 @@ fn an_arc_between_sharp_corners_keeps_its_tolerance_on_a_slow_axis() {
 ] };
     holds(&course, &[[32.89819691287391, 100.00000000000004, 300.00000000000017], [196.8202434293325, 23188.25179378773, 69564.7553813632]]);
 }
+
+/// Times of days leave no digits for filters of milliseconds, unless the clock is set back.
+#[test]
+#[rustfmt::skip]
+fn moves_of_days_are_followed_as_exactly_as_others() {
+    let course = Course { start: [0.0, 0.0, 0.0], legs: vec![
+    go(Lead::Line([-8.778115266, 12.066214031, 15.592511032]), 0.0001015, 0.0169967),
+    go(Lead::Line([-57.534368522, -36.690039225, -33.163742224]), 0.0001015, 0.0169967),
+    go(Lead::Line([-57.535284747, -36.590069537, -30.824377772]), 0.0001015, 0.0169967),
+] };
+    holds(&course, &[[629.458, 2500.0, 26690.4], [231.644, 2500.0, 348203.0], [102.297, 2500.0, 31765.6]]);
+}
