@@ -27,8 +27,9 @@ pub(crate) const ROUNDING_SHARE: f64 = 0.001;
 /// share of the tolerance: less than a micrometre where parts are machined.
 const NEGLIGIBLE: f64 = 0.01;
 
-/// Most moves merged into one: bounds memory and the work a move.
-const MOST_MERGED: usize = 160;
+/// Most moves merged into one: bounds memory and the work a move. Where it cuts a straight line, there
+/// is a corner more than the tolerance asks for.
+pub(crate) const MOST_MERGED: usize = 1024;
 
 /// The end of a straight stretch of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,13 +51,42 @@ pub(crate) struct Merger<const N: usize> {
     share: f64,
     anchor: Vector<N>,
     run: Vec<Vertex<N>>,
+    /// What bounds the run as a whole; `None` when it is empty.
+    bounds: Option<Bounds>,
     /// Largest distance of the run from its line.
     deviation: f64,
-    /// Largest feedrate of the run.
-    fastest: f64,
     carried: Option<Carried<N>>,
     /// Number of the first vertex that no leg has served.
     first: u64,
+}
+
+/// What the vertices of a run have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bounds {
+    slowest: f64,
+    fastest: f64,
+    tolerance: Tolerance,
+    bulge: f64,
+}
+
+impl Bounds {
+    fn of<const N: usize>(vertex: &Vertex<N>) -> Self {
+        Self {
+            slowest: vertex.feedrate,
+            fastest: vertex.feedrate,
+            tolerance: vertex.tolerance,
+            bulge: vertex.bulge,
+        }
+    }
+
+    fn with<const N: usize>(self, vertex: &Vertex<N>) -> Self {
+        Self {
+            slowest: self.slowest.min(vertex.feedrate),
+            fastest: self.fastest.max(vertex.feedrate),
+            tolerance: self.tolerance.min(vertex.tolerance),
+            bulge: self.bulge.max(vertex.bulge),
+        }
+    }
 }
 
 /// Moves that led nowhere and wait for a leg to serve them.
@@ -81,8 +111,8 @@ impl<const N: usize> Merger<N> {
             share,
             anchor: start,
             run: Vec::with_capacity(MOST_MERGED + 1),
+            bounds: None,
             deviation: 0.0,
-            fastest: 0.0,
             carried: None,
             first: 0,
         }
@@ -94,8 +124,8 @@ impl<const N: usize> Merger<N> {
         self.share = other.share;
         self.anchor = other.anchor;
         self.run.clone_from(&other.run);
+        self.bounds = other.bounds;
         self.deviation = other.deviation;
-        self.fastest = other.fastest;
         self.carried = other.carried;
         self.first = other.first;
     }
@@ -104,8 +134,8 @@ impl<const N: usize> Merger<N> {
     pub(crate) fn restart(&mut self, start: Vector<N>) {
         self.anchor = start;
         self.run.clear();
+        self.bounds = None;
         self.deviation = 0.0;
-        self.fastest = 0.0;
         self.carried = None;
     }
 
@@ -127,7 +157,10 @@ impl<const N: usize> Merger<N> {
                 self.deviation = vertex.bulge;
             }
         }
-        self.fastest = self.fastest.max(vertex.feedrate);
+        self.bounds = Some(match self.bounds {
+            Some(bounds) => bounds.with(&vertex),
+            None => Bounds::of(&vertex),
+        });
         self.run.push(vertex);
         leg
     }
@@ -135,6 +168,7 @@ impl<const N: usize> Merger<N> {
     /// Completes the leg under way, if there is one.
     pub(crate) fn flush(&mut self) -> Option<Leg<N>> {
         let (first, last) = (*self.run.first()?, *self.run.last()?);
+        let bounds = self.bounds?;
         let span = last.point - self.anchor;
         let length = span.norm();
         let mut serves = Serves {
@@ -142,19 +176,15 @@ impl<const N: usize> Merger<N> {
             last: last.serves.last,
         };
         let mut deviation = self.deviation;
-        let (mut feedrate, mut tolerance) = (first.feedrate, first.tolerance);
-        for vertex in &self.run {
-            feedrate = feedrate.min(vertex.feedrate);
-            tolerance = tolerance.min(vertex.tolerance);
-        }
+        let (feedrate, mut tolerance) = (bounds.slowest, bounds.tolerance);
         if let Some(carried) = self.carried.take() {
             serves.first = carried.serves.first;
             deviation = deviation.max(carried.deviation);
             tolerance = tolerance.min(carried.tolerance);
         }
         self.run.clear();
+        self.bounds = None;
         self.deviation = 0.0;
-        self.fastest = 0.0;
         if length <= SHORTEST_LENGTH {
             self.carry(&Vertex { tolerance, ..last }, serves, deviation);
             return None;
@@ -232,13 +262,11 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Whether moves would lose time if `vertex` were merged, because another of the run has a lower
-    /// feedrate: all but those so short that they would not get up to it between two stops.
-    fn hurries(&self, vertex: &Vertex<N>, before: &Vertex<N>, tolerance: Tolerance) -> bool {
-        let feedrate = self
-            .run
-            .iter()
-            .fold(vertex.feedrate, |least, member| least.min(member.feedrate));
-        if feedrate >= vertex.feedrate && feedrate >= self.fastest {
+    /// feedrate: all but those so short that they would not get up to it between two stops. `bounds` are
+    /// those of the run and the vertex.
+    fn hurries(&self, vertex: &Vertex<N>, before: &Vertex<N>, bounds: &Bounds) -> bool {
+        let feedrate = bounds.slowest;
+        if feedrate >= bounds.fastest {
             return false;
         }
         let mut hurried = 0.0;
@@ -250,7 +278,7 @@ impl<const N: usize> Merger<N> {
             }
             hurried += length;
             let reached = self.limits.along(&(span / length)).reachable_within(length);
-            hurried <= NEGLIGIBLE * tolerance.length() && reached <= feedrate
+            hurried <= NEGLIGIBLE * bounds.tolerance.length() && reached <= feedrate
         };
         let mut from = self.anchor;
         for member in &self.run {
@@ -264,24 +292,17 @@ impl<const N: usize> Merger<N> {
 
     /// Largest distance of the run from a line to `vertex`, or `None` when it cannot be merged.
     fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
-        let Some(before) = self.run.last() else {
+        let (Some(before), Some(bounds)) = (self.run.last(), self.bounds) else {
             return Some(vertex.bulge);
         };
         if self.run.len() >= MOST_MERGED {
             return None;
         }
-        let tolerance = self.run.iter().fold(vertex.tolerance, |least, member| {
-            least.min(member.tolerance)
-        });
-        let budget = self.share * tolerance.length();
-        if self.hurries(vertex, before, tolerance) {
+        let bounds = bounds.with(vertex);
+        if self.hurries(vertex, before, &bounds) {
             return None;
         }
-        let bulge = self
-            .run
-            .iter()
-            .fold(vertex.bulge, |most, member| most.max(member.bulge));
-        let budget = (budget - bulge).max(0.0);
+        let budget = (self.share * bounds.tolerance.length() - bounds.bulge).max(0.0);
         let span = vertex.point - self.anchor;
         let square = span.norm_squared();
         let mut furthest = 0.0_f64;
@@ -297,6 +318,6 @@ impl<const N: usize> Merger<N> {
                 return None;
             }
         }
-        Some(furthest.sqrt() + bulge)
+        Some(furthest.sqrt() + bounds.bulge)
     }
 }

@@ -26,7 +26,11 @@ fn curve(points: &mut Vec<[f64; 2]>, from: [f64; 2], angle: f64, chords: u32) {
 }
 
 fn planned(points: &[[f64; 2]]) -> Plan<2> {
-    let course = Course::of_lines([0.0, 0.0], points, FEEDRATE, 0.05);
+    planned_at(points, FEEDRATE)
+}
+
+fn planned_at(points: &[[f64; 2]], feedrate: f64) -> Plan<2> {
+    let course = Course::of_lines([0.0, 0.0], points, feedrate, 0.05);
     let path = course.toolpath();
     let limits = limits(&LIMITS);
     let motion = plan(&path, &Settings::new(limits)).unwrap();
@@ -185,4 +189,17 @@ fn an_arc_beside_a_stop_takes_what_it_takes_alone() {
         start = end;
     }
     assert!((whole - sum).abs() < 1e-9, "{whole} s, {sum} s");
+}
+
+#[test]
+fn fine_moves_that_stray_less_than_the_tolerance_take_what_a_straight_line_takes() {
+    let fine: Vec<_> = (1..=10_000_u32)
+        .map(|number| {
+            let along = 0.01 * f64::from(number);
+            [along, 0.002 * (37.0 * along).sin()]
+        })
+        .collect();
+    let [fine, straight] = [&fine[..], &[[100.0, 0.0]]].map(|points| planned_at(points, 500.0));
+    let most = 1.001 * straight.duration();
+    assert!(fine.duration() < most, "{} s", fine.duration());
 }

@@ -10,7 +10,7 @@ mod vertices;
 
 use crate::corners::Corners;
 use crate::leg::Leg;
-use crate::merge::{Merger, Vertex};
+use crate::merge::{MOST_MERGED, Merger, Vertex};
 use crate::method::Settings;
 use crate::superposed::Superposer;
 use std::collections::VecDeque;
@@ -79,7 +79,7 @@ impl<const N: usize> Stretches<N> {
     pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
             merger: Merger::new(start, settings.limits, FINE_SHARE),
-            vertices: Vertices::with_capacity(MOST_VERTICES + LONGEST_ARC),
+            vertices: Vertices::with_capacity(MOST_VERTICES + LONGEST_ARC + 2 * MOST_MERGED),
             arc: None,
             legs: Vec::with_capacity(MOST_LEGS + LONGEST_ARC),
             corners: Corners::new(start, settings, MOST_VERTICES + LONGEST_ARC),
