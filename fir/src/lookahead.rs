@@ -213,15 +213,19 @@ impl<const N: usize> LookAhead<N> {
 
     /// Chooses feedrates and overlaps of all that was not handed out; `false` where none fits what was.
     fn solve(&mut self) -> bool {
-        self.before.clear();
-        self.before
-            .extend_from_slice(&self.pulses[self.fixed.saturating_sub(1)..]);
+        if self.fixed > 0 {
+            self.before.clear();
+            self.before
+                .extend_from_slice(&self.pulses[self.fixed - 1..]);
+        }
         if self.attempt(false) {
             self.planned = self.pulses.len();
             self.planned_capped = false;
             return true;
         }
-        self.restore();
+        if self.fixed > 0 {
+            self.restore();
+        }
         if self.attempt(true) || self.fixed == 0 {
             self.planned = self.pulses.len();
             self.planned_capped = self.capped;

@@ -22,7 +22,7 @@ const WORSE_IN_A_ROW: u32 = 2;
 
 /// Time that is so little more than what the feedrates of the program ask for that no chain need be
 /// tried for the rest, as their ratio.
-const ENOUGH: f64 = 1.01;
+const ENOUGH: f64 = 1.03;
 
 /// The same once one chain took longer than the best one.
 const NEARLY_ENOUGH: f64 = 1.05;

@@ -152,10 +152,20 @@ impl<const N: usize> LookAhead<N> {
         done.clear();
         let mut cut = false;
         for index in (self.fixed..count).rev() {
-            let mut pulse = self.pulses[index];
             if index + 1 < count {
-                clock += self.dwell_after(&pulse).0;
+                clock += self.dwell_after(&self.pulses[index]).0;
             }
+            if !cut {
+                let pulse = &self.pulses[index];
+                let feed = self.feed_before(pulse, self.pulses[index + 1..].iter(), clock);
+                if feed >= pulse.feed * (1.0 - TOO_HIGH) {
+                    let end = clock + pulse.length / pulse.feed;
+                    self.times.push((clock, end));
+                    clock = end;
+                    continue;
+                }
+            }
+            let mut pulse = self.pulses[index];
             loop {
                 let feed = if cut {
                     self.feed_before(&pulse, done.iter().rev(), clock)
