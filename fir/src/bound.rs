@@ -27,6 +27,11 @@ pub(crate) const TOUCH: f64 = 1e-13;
 pub(crate) struct Schedule {
     begin: Vec<f64>,
     end: Vec<f64>,
+    /// When the run of each pulse begins and ends: those that go along the same arc at the same feedrate.
+    since: Vec<f64>,
+    until: Vec<f64>,
+    /// Whether any pulse waits for others to leave the longest filter.
+    waits: bool,
     /// Progress of the pulses in the window of the last corner asked for.
     progress: Vec<f64>,
     /// Shares of that window that the pulses have.
@@ -44,6 +49,9 @@ impl Schedule {
         Self {
             begin: room(),
             end: room(),
+            since: room(),
+            until: room(),
+            waits: false,
             progress: room(),
             shares: room(),
             contributions: room(),
@@ -58,6 +66,17 @@ impl Schedule {
 
     pub(crate) fn end(&self, pulse: usize) -> f64 {
         self.end[pulse]
+    }
+
+    /// Whether any pulse waits; a wait is shorter where feedrates fall, otherwise dwells only grow.
+    pub(crate) fn waits(&self) -> bool {
+        self.waits
+    }
+
+    /// Whether a corner is in the middle of a run that fills the whole window of a chain.
+    pub(crate) fn is_steady(&self, corner: usize, chain: &CubicChain) -> bool {
+        let (half, end) = (0.5 * chain.total() + TOUCH, self.end[corner]);
+        end - self.since[corner] >= half && self.until[corner] - end >= half
     }
 
     /// The corners that contributed to the bound asked for last, with their shares.
@@ -113,21 +132,30 @@ impl Schedule {
     ) {
         self.begin.clear();
         self.end.clear();
+        self.since.clear();
+        self.waits = false;
         let mut clock = 0.0;
+        let mut since = 0.0;
         let mut could_clash = false;
         let total = chain.total();
         for (index, pulse) in pulses.iter().enumerate() {
-            let velocity = pulse.direction * pulse.feed;
-            if index > 0 {
-                clock += if index < fixed {
+            if let Some(before) = index.checked_sub(1).map(|before| &pulses[before]) {
+                let gap = if index < fixed {
                     pulse.gap
                 } else {
-                    total - pulses[index - 1].overlap
+                    total - before.overlap
                 };
+                clock += gap;
+                if gap > 0.0 || !before.goes_on(pulse) {
+                    since = clock;
+                }
             }
+            let velocity = pulse.direction * pulse.feed;
             could_clash =
                 could_clash || (0..N).any(|axis| velocity[axis].abs() > 0.5 * change[axis]);
-            if could_clash && index >= fixed {
+            // Turns of one arc are in step with each other.
+            let steady = since + chain.long() <= clock;
+            if could_clash && index >= fixed && !steady {
                 // Where it may wait: the latest dwell.
                 let mut waits = anywhere.then_some(index);
                 for earlier in (0..index).rev() {
@@ -148,15 +176,30 @@ impl Schedule {
                         for delayed in waits..index {
                             self.begin[delayed] += late;
                             self.end[delayed] += late;
+                            self.since[delayed] = self.begin[delayed];
                         }
                         clock = free;
+                        since = clock;
+                        self.waits = true;
                         break;
                     }
                 }
             }
             self.begin.push(clock);
+            self.since.push(since);
             clock += pulse.length / pulse.feed;
             self.end.push(clock);
+        }
+        self.find_ends_of_runs();
+    }
+
+    fn find_ends_of_runs(&mut self) {
+        self.until.clear();
+        self.until.extend_from_slice(&self.end);
+        for index in (1..self.until.len()).rev() {
+            if self.since[index] < self.begin[index] {
+                self.until[index - 1] = self.until[index];
+            }
         }
     }
 

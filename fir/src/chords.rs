@@ -49,9 +49,13 @@ impl<const N: usize> Chords<N> {
         }
     }
 
-    /// Turn `|t2 - t1|` between two of them.
+    /// Largest turn `|t2 - t1|` between two of them: on a spiral the direction turns by more than the arc
+    /// does.
     pub(crate) fn turn(&self) -> f64 {
-        2.0 * (0.5 * self.angle).sin()
+        let (start, end) = self.arc.radii();
+        let pitch = (end - start) / (self.arc.sweep() * start.min(end));
+        let angle = self.angle * (1.0 + pitch * pitch).min(2.0);
+        2.0 * (0.5 * angle).sin() * (1.0 + pitch * pitch).sqrt()
     }
 
     /// Turn of the arc per length, 1/mm.
@@ -69,14 +73,22 @@ impl<const N: usize> Chords<N> {
         self.outward
     }
 
-    /// Length of the shortest chord, of the first two.
+    /// Length of the shortest chord, of the first two and the last two.
     pub(crate) fn shortest(&self) -> f64 {
-        let first = self.vertex(1.0);
-        let mut length = (first - self.arc.start()).norm();
+        let length = |first: f64, last: f64| (self.vertex(last) - self.vertex(first)).norm();
+        let mut shortest = length(0.0, 1.0);
         if self.count > 1.0 {
-            length = length.min((self.vertex(2.0) - first).norm());
+            shortest = shortest.min(length(1.0, 2.0));
         }
-        length
+        let (start, end) = self.arc.radii();
+        if start > end {
+            let last = self.count;
+            shortest = shortest.min(length(last - 1.0, last));
+            if last > 1.0 {
+                shortest = shortest.min(length(last - 2.0, last - 1.0));
+            }
+        }
+        shortest
     }
 
     /// The vertex of an index from 0 to the count.

@@ -23,6 +23,7 @@ use crate::command::{Command, TimedPulse};
 use crate::cubic::CubicChain;
 use crate::pulse::Pulse;
 use crate::settings::{designed_for, largest_change};
+use correction::Standing;
 use toolglide_kinematics::{Limits, Vector};
 
 /// Pulses that wait before the first of them are handed out.
@@ -76,7 +77,10 @@ pub(crate) struct LookAhead<const N: usize> {
     /// The same of what was planned last.
     planned_capped: bool,
     schedule: Schedule,
-    dirty: Vec<bool>,
+    standing: Vec<Standing>,
+    /// How far corners are from both ends of their runs.
+    behind: Vec<f64>,
+    ahead: Vec<f64>,
     slower: Vec<f64>,
     longer: Vec<f64>,
 }
@@ -108,7 +112,9 @@ impl<const N: usize> LookAhead<N> {
             capped: false,
             planned_capped: false,
             schedule: Schedule::with_capacity(capacity),
-            dirty: Vec::with_capacity(capacity),
+            standing: Vec::with_capacity(capacity),
+            behind: Vec::with_capacity(capacity),
+            ahead: Vec::with_capacity(capacity),
             slower: Vec::with_capacity(capacity),
             longer: Vec::with_capacity(capacity),
         }

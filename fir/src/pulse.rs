@@ -82,6 +82,15 @@ impl<const N: usize> Pulse<N> {
         }
     }
 
+    /// Whether the next pulse goes along the same arc at the same feedrate, no faster than the arc allows.
+    pub(crate) fn goes_on(&self, next: &Self) -> bool {
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        self.smooth
+            && same(self.feed, next.feed)
+            && same(self.tolerance, next.tolerance)
+            && next.feed <= next.limit
+    }
+
     /// The parts before and after a distance.
     pub(crate) fn split(&self, distance: f64) -> (Self, Self) {
         let middle = self.from + self.direction * distance;

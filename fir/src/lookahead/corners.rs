@@ -72,19 +72,19 @@ impl<const N: usize> LookAhead<N> {
             }
         }
         for corner in self.fixed.saturating_sub(1)..self.pulses.len().saturating_sub(1) {
-            let before = self.pulses[corner];
+            let before = &mut self.pulses[corner];
             if corner < self.fixed && before.sorted {
                 // Its feedrate was chosen for this.
                 continue;
             }
             if before.smooth {
-                self.pulses[corner].pass = true;
-                self.pulses[corner].sorted = true;
-                self.pulses[corner].overlap = total;
+                before.pass = true;
+                before.sorted = true;
+                before.overlap = total;
                 continue;
             }
-            let after = self.pulses[corner + 1];
             let own = self.own_overlap(corner);
+            let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
             let pass = if before.turn > SHARP {
                 false
             } else if corner < self.fixed {
@@ -93,9 +93,9 @@ impl<const N: usize> LookAhead<N> {
                 let slowest = before.feed.min(after.feed);
                 let share = (self.allowed(corner) / (before.turn * half * slowest)).min(1.0);
                 let passing = (share * slowest).min(self.turning_feed(corner));
-                let going = self.cost(&before, passing) + self.cost(&after, passing);
+                let going = self.cost(before, passing) + self.cost(after, passing);
                 let starting = |pulse: &Pulse<N>| self.cost_of_steps(pulse, pulse.step);
-                going < starting(&before) + starting(&after) + (total - own)
+                going < starting(before) + starting(after) + (total - own)
             };
             let pulse = &mut self.pulses[corner];
             pulse.pass = pass;
@@ -153,11 +153,15 @@ impl<const N: usize> LookAhead<N> {
         let last = self.pulses.len().saturating_sub(1);
         self.slower.clear();
         self.slower.resize(self.pulses.len(), f64::INFINITY);
+        self.measure_runs();
         for corner in self.fixed.saturating_sub(1)..last {
-            let pulse = self.pulses[corner];
-            if pulse.pass && pulse.turn > 0.0 {
+            let pulse = &self.pulses[corner];
+            // In the middle of an arc its own feedrate is right.
+            let reach = pulse.feed * half;
+            let steady = self.behind[corner] >= reach && self.ahead[corner] >= reach;
+            if pulse.pass && pulse.turn > 0.0 && !steady {
                 let feed = self.passing_feed(corner);
-                self.slower[corner] = if self.capped || pulse.smooth {
+                self.slower[corner] = if self.capped || self.pulses[corner].smooth {
                     feed
                 } else {
                     feed.min(self.turning_feed(corner))
@@ -170,6 +174,9 @@ impl<const N: usize> LookAhead<N> {
                 0 => f64::INFINITY,
                 _ => self.slower[index - 1],
             };
+            if tail.min(head) >= self.pulses[index].feed {
+                continue;
+            }
             let pulse = self.pulses[index];
             let slow = |feed: f64| if feed < pulse.feed { feed * half } else { 0.0 };
             let (head_length, tail_length) = (slow(head), slow(tail));
@@ -187,6 +194,31 @@ impl<const N: usize> LookAhead<N> {
             if head_length > 0.0 {
                 self.cut(index, head_length);
                 self.pulses[index].feed = head;
+            }
+        }
+    }
+
+    /// How far each corner is from both ends of its run of pulses along one arc at one feedrate.
+    fn measure_runs(&mut self) {
+        let count = self.pulses.len();
+        self.behind.clear();
+        self.ahead.clear();
+        self.ahead.resize(count, 0.0);
+        let mut behind = 0.0;
+        for (index, pulse) in self.pulses.iter().enumerate() {
+            behind += pulse.length;
+            self.behind.push(behind);
+            if !self
+                .pulses
+                .get(index + 1)
+                .is_some_and(|next| pulse.goes_on(next))
+            {
+                behind = 0.0;
+            }
+        }
+        for index in (1..count).rev() {
+            if self.pulses[index - 1].goes_on(&self.pulses[index]) {
+                self.ahead[index - 1] = self.ahead[index] + self.pulses[index].length;
             }
         }
     }

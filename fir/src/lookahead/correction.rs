@@ -1,7 +1,9 @@
 //! Lengthens dwells and lowers feedrates until the bound holds at every corner.
 //!
-//! Source: ours. Feedrates only fall and dwells only grow; since a longer dwell anywhere never increases
-//! the bound anywhere, full stops end the search. Not here: the first choice of both.
+//! Source: ours. Feedrates only fall and dwells only grow, which never increases the bound anywhere: of
+//! two motions along the path with the same mean, the slower one passes the other once, from ahead to
+//! behind, so it is nowhere further spread. So what holds stays so, and full stops end the search. Not
+//! here: the first choice of both.
 
 use super::{AIM, LookAhead};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
@@ -21,14 +23,25 @@ const ROUNDS_TO_STOP: u32 = 56;
 /// Rounds after which nothing is left to be lengthened.
 const LAST_ROUND: u32 = ROUNDS_TO_STOP + 8;
 
+/// What is known of the bound at a corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// Nothing.
+    Open,
+    /// It holds as long as what is in its window stays as it is.
+    Holds,
+    /// It holds whatever is slower.
+    Settled,
+}
+
 impl<const N: usize> LookAhead<N> {
     /// Lengthens dwells and slows pulses until the bound holds at every corner; whether any had to be.
     pub(super) fn correct(&mut self) -> bool {
         self.time();
         let count = self.pulses.len();
         let corners = count.saturating_sub(1);
-        self.dirty.clear();
-        self.dirty.resize(count, true);
+        self.standing.clear();
+        self.standing.resize(count, Standing::Open);
         for round in 0.. {
             self.slower.clear();
             self.slower.resize(count, 1.0);
@@ -36,20 +49,24 @@ impl<const N: usize> LookAhead<N> {
             self.longer.resize(count, 1.0);
             let mut broken = false;
             for corner in 0..corners {
-                if !self.dirty[corner] || self.is_settled(corner) {
+                if self.standing[corner] != Standing::Open {
                     continue;
                 }
-                self.dirty[corner] = false;
-                if self.pulses[corner].part {
-                    // The bound is largest where the path turns.
+                // The bound is largest where the path turns.
+                if self.pulses[corner].part || self.is_settled(corner) {
+                    self.standing[corner] = Standing::Settled;
                     continue;
                 }
                 let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
-                let allowed = self.room(corner, bound);
+                let (allowed, depends) = self.room(corner, bound);
                 if bound > allowed * (1.0 + LIMIT_SLACK) {
                     broken = true;
-                    self.dirty[corner] = true;
                     self.blame(bound / (AIM * allowed), allowed, round);
+                } else {
+                    self.standing[corner] = match depends {
+                        true => Standing::Holds,
+                        false => Standing::Settled,
+                    };
                 }
             }
             // Beyond the last round every corner in question is a full stop, whose bound is rounding.
@@ -69,7 +86,7 @@ impl<const N: usize> LookAhead<N> {
                 return true;
             }
             let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
-            bound <= self.room(corner, bound) * (1.0 + LIMIT_SLACK)
+            bound <= self.room(corner, bound).0 * (1.0 + LIMIT_SLACK)
         })
     }
 
@@ -82,31 +99,7 @@ impl<const N: usize> LookAhead<N> {
         {
             return true;
         }
-        let pulses = &self.pulses;
-        let same = |index: usize| {
-            let pulse = &pulses[index];
-            pulse.smooth && pulse.pass && pulse.overlap >= total && pulse.feed >= pulse.limit
-        };
-        if !same(corner) {
-            return false;
-        }
-        // Where feedrates differ, the instant in question is anywhere in the window.
-        let reach = total;
-        let mut index = corner;
-        while self.schedule.end(corner) - self.schedule.begin(index) < reach {
-            if index == 0 || !same(index - 1) {
-                return false;
-            }
-            index -= 1;
-        }
-        index = corner + 1;
-        while self.schedule.end(index) - self.schedule.end(corner) < reach {
-            if !same(index) || index + 1 >= pulses.len() {
-                return false;
-            }
-            index += 1;
-        }
-        true
+        self.schedule.is_steady(corner, &self.chain)
     }
 
     /// Notes what the corners in the window must do about a bound that is broken by a factor.
@@ -140,12 +133,11 @@ impl<const N: usize> LookAhead<N> {
     }
 
     fn apply(&mut self, round: u32) {
-        let total = self.chain.total();
         for index in 0..self.pulses.len() {
             let slower = self.slower[index].min(2.0);
             if index >= self.fixed && slower > 1.0 {
                 self.pulses[index].feed /= slower;
-                self.mark(index, total);
+                self.mark(index);
             }
             let longer = self.longer[index];
             if index + 1 >= self.fixed && longer > 1.0 {
@@ -157,26 +149,34 @@ impl<const N: usize> LookAhead<N> {
                 if round >= ROUNDS_TO_STOP {
                     pulse.overlap = 0.0;
                 }
-                self.mark(index, total);
+                self.mark(index);
             }
         }
     }
 
-    /// The corners whose bound depends on a pulse.
-    fn mark(&mut self, index: usize, total: f64) {
-        let reach = 2.0 * total;
+    /// Opens the corners to which it matters that a pulse is slower, or the dwell behind it longer.
+    fn mark(&mut self, index: usize) {
+        // Where a pulse waits no longer, what is behind it is nearer to what is before it.
+        let nearer = self.schedule.waits();
+        let reach = if nearer { 2.0 } else { 1.0 } * self.chain.total();
         let (begin, end) = (self.schedule.begin(index), self.schedule.end(index));
-        for corner in (0..=index).rev() {
-            if begin - self.schedule.end(corner) > reach {
+        let open = |standing: &mut Standing| {
+            if nearer || *standing == Standing::Holds {
+                *standing = Standing::Open;
+            }
+        };
+        let corners = self.pulses.len() - 1;
+        for corner in (0..corners.min(index + 1)).rev() {
+            if begin - self.schedule.begin(corner + 1) > reach {
                 break;
             }
-            self.dirty[corner] = true;
+            open(&mut self.standing[corner]);
         }
-        for corner in index..self.pulses.len() {
-            if self.schedule.begin(corner) - end > reach {
+        for corner in index..corners {
+            if self.schedule.end(corner) - end > reach {
                 break;
             }
-            self.dirty[corner] = true;
+            open(&mut self.standing[corner]);
         }
     }
 }

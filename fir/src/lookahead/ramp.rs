@@ -56,6 +56,8 @@ impl<const N: usize> LookAhead<N> {
         let count = self.pulses.len();
         let mut changed = false;
         let mut clock = 0.0;
+        // When the run along one arc at one feedrate began.
+        let mut since = 0.0;
         self.times.clear();
         // What comes after the first cut.
         let mut rest = std::mem::take(&mut self.cuts);
@@ -67,18 +69,27 @@ impl<const N: usize> LookAhead<N> {
                 at = self.pulses.len();
                 self.pulses.push(rest[index - cut]);
             }
-            if index < self.fixed {
-                clock += self.pulses[index].gap;
-            } else if let Some(before) = at.checked_sub(1) {
-                clock += self.dwell_after(&self.pulses[before]).0;
+            if let Some(before) = at.checked_sub(1) {
+                let before = &self.pulses[before];
+                let gap = if index < self.fixed {
+                    self.pulses[index].gap
+                } else {
+                    self.dwell_after(before).0
+                };
+                clock += gap;
+                if gap > 0.0 || !before.goes_on(&self.pulses[at]) {
+                    since = clock;
+                }
             }
-            while index >= self.fixed {
+            // Turns of one arc are in step with each other.
+            while index >= self.fixed && since + long > clock {
                 let pulse = &self.pulses[at];
                 let feed = self.feed_after(at, clock);
                 if feed >= pulse.feed * (1.0 - TOO_HIGH) {
                     break;
                 }
                 changed = true;
+                since = clock;
                 let head = feed * long;
                 if !self.is_worth_a_cut(pulse, head, at + count - index) {
                     self.pulses[at].feed = feed;
@@ -95,6 +106,7 @@ impl<const N: usize> LookAhead<N> {
                 self.pulses.push(after);
                 self.times.push((clock, clock + long));
                 clock += long;
+                since = clock;
                 at += 1;
             }
             let pulse = &self.pulses[at];
@@ -146,27 +158,38 @@ impl<const N: usize> LookAhead<N> {
         let mut changed = false;
         // Time runs backward from the end.
         let mut clock = 0.0;
+        let mut until = 0.0;
         self.times.clear();
         // What comes before the last cut and after it, the last pulse first.
         let mut done = std::mem::take(&mut self.cuts);
         done.clear();
         let mut cut = false;
         for index in (self.fixed..count).rev() {
-            if index + 1 < count {
-                clock += self.dwell_after(&self.pulses[index]).0;
+            let pulse = &self.pulses[index];
+            let next = match cut {
+                true => done.last(),
+                false => self.pulses.get(index + 1),
+            };
+            if let Some(next) = next {
+                let gap = self.dwell_after(pulse).0;
+                clock += gap;
+                if gap > 0.0 || !pulse.goes_on(next) {
+                    until = clock;
+                }
             }
+            let steady = until + long <= clock;
             if !cut {
-                let pulse = &self.pulses[index];
-                let feed = self.feed_before(pulse, self.pulses[index + 1..].iter(), clock);
-                if feed >= pulse.feed * (1.0 - TOO_HIGH) {
+                let in_step = |feed: f64| feed >= pulse.feed * (1.0 - TOO_HIGH);
+                let after = self.pulses[index + 1..].iter();
+                if steady || in_step(self.feed_before(pulse, after, clock)) {
                     let end = clock + pulse.length / pulse.feed;
                     self.times.push((clock, end));
                     clock = end;
                     continue;
                 }
             }
-            let mut pulse = self.pulses[index];
-            loop {
+            let mut pulse = *pulse;
+            while !steady {
                 let feed = if cut {
                     self.feed_before(&pulse, done.iter().rev(), clock)
                 } else {
@@ -176,6 +199,7 @@ impl<const N: usize> LookAhead<N> {
                     break;
                 }
                 changed = true;
+                until = clock;
                 let tail = feed * long;
                 let others = if cut { done.len() } else { count - 1 - index };
                 if !self.is_worth_a_cut(&pulse, tail, others + index + 1) {
@@ -191,6 +215,7 @@ impl<const N: usize> LookAhead<N> {
                 }
                 self.times.push((clock, clock + long));
                 clock += long;
+                until = clock;
                 done.push(after);
                 pulse = before;
             }

@@ -30,27 +30,28 @@ impl<const N: usize> LookAhead<N> {
         }
     }
 
-    /// What is allowed at the corner whose bound was asked for last.
-    pub(super) fn room(&self, corner: usize, bound: f64) -> f64 {
+    /// What is allowed at the corner whose bound was asked for last, and whether that depends on what else is
+    /// in its window.
+    pub(super) fn room(&self, corner: usize, bound: f64) -> (f64, bool) {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let tolerance = self.tolerance(corner);
         let sagitta = before.sagitta.max(after.sagitta);
         if sagitta <= 0.0 || bound <= tolerance - sagitta {
-            return tolerance;
+            return (tolerance, false);
         }
         let beside = || self.room_beside(corner).min(self.room_beside(corner + 1));
         match before.arc {
             // On one arc, the mean of points no further apart is no further inside.
             Some(arc) if before.smooth && self.schedule.lies_on(&self.pulses, arc) => {
-                STEADY_EXCESS * tolerance + before.outward
+                (STEADY_EXCESS * tolerance + before.outward, false)
             }
             Some(arc) if before.smooth => {
                 // Turns of the arc itself lead inside, where the vertex counts against them.
                 let inside = self.schedule.contribution_of(&self.pulses, arc);
                 let at_vertex = before.outward.min(2.0 * inside - before.outward);
-                STEADY_EXCESS * tolerance + at_vertex.min(beside())
+                (STEADY_EXCESS * tolerance + at_vertex.min(beside()), true)
             }
-            _ => tolerance + beside().min(0.0),
+            _ => (tolerance + beside().min(0.0), true),
         }
     }
 
