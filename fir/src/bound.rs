@@ -135,7 +135,7 @@ impl Schedule {
         self.since.clear();
         self.waits = false;
         let mut clock = 0.0;
-        let mut since = 0.0;
+        let (mut since, mut in_step_since) = (0.0, 0.0);
         let mut could_clash = false;
         let total = chain.total();
         for (index, pulse) in pulses.iter().enumerate() {
@@ -149,12 +149,15 @@ impl Schedule {
                 if gap > 0.0 || !before.goes_on(pulse) {
                     since = clock;
                 }
+                if gap > 0.0 || !before.turns_on(pulse) {
+                    in_step_since = clock;
+                }
             }
             let velocity = pulse.direction * pulse.feed;
             could_clash =
                 could_clash || (0..N).any(|axis| velocity[axis].abs() > 0.5 * change[axis]);
             // Turns of one arc are in step with each other.
-            let steady = since + chain.long() <= clock;
+            let steady = in_step_since + chain.long() <= clock;
             if could_clash && index >= fixed && !steady {
                 // Where it may wait: the latest dwell.
                 let mut waits = anywhere.then_some(index);
@@ -179,7 +182,7 @@ impl Schedule {
                             self.since[delayed] = self.begin[delayed];
                         }
                         clock = free;
-                        since = clock;
+                        (since, in_step_since) = (clock, clock);
                         self.waits = true;
                         break;
                     }

@@ -91,6 +91,11 @@ impl<const N: usize> Pulse<N> {
             && next.feed <= next.limit
     }
 
+    /// Whether, besides, the path turns no more between them than the arc does; it does where the arc ends.
+    pub(crate) fn turns_on(&self, next: &Self) -> bool {
+        self.goes_on(next) && self.turn <= self.curvature * self.length
+    }
+
     /// The parts before and after a distance.
     pub(crate) fn split(&self, distance: f64) -> (Self, Self) {
         let middle = self.from + self.direction * distance;

@@ -71,6 +71,7 @@ impl<const N: usize> LookAhead<N> {
             }
             // Beyond the last round every corner in question is a full stop, whose bound is rounding.
             if !broken || round > LAST_ROUND {
+                debug_assert!(broken || self.holds(), "what held holds no longer");
                 return round > 0;
             }
             self.apply(round);

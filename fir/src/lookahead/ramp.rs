@@ -77,7 +77,7 @@ impl<const N: usize> LookAhead<N> {
                     self.dwell_after(before).0
                 };
                 clock += gap;
-                if gap > 0.0 || !before.goes_on(&self.pulses[at]) {
+                if gap > 0.0 || !before.turns_on(&self.pulses[at]) {
                     since = clock;
                 }
             }
@@ -173,7 +173,7 @@ impl<const N: usize> LookAhead<N> {
             if let Some(next) = next {
                 let gap = self.dwell_after(pulse).0;
                 clock += gap;
-                if gap > 0.0 || !pulse.goes_on(next) {
+                if gap > 0.0 || !pulse.turns_on(next) {
                     until = clock;
                 }
             }

@@ -41,9 +41,10 @@ impl<const N: usize> LookAhead<N> {
         }
         let beside = || self.room_beside(corner).min(self.room_beside(corner + 1));
         match before.arc {
-            // On one arc, the mean of points no further apart is no further inside.
+            // On one arc, which is no faster than its own tolerance allows, the mean of points no further
+            // apart is no further inside.
             Some(arc) if before.smooth && self.schedule.lies_on(&self.pulses, arc) => {
-                (STEADY_EXCESS * tolerance + before.outward, false)
+                (f64::INFINITY, false)
             }
             Some(arc) if before.smooth => {
                 // Turns of the arc itself lead inside, where the vertex counts against them.
