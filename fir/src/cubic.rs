@@ -41,6 +41,9 @@ pub(crate) struct CubicChain {
     long: f64,
     short: f64,
     total: f64,
+    /// One over twice the long one, and over twice the product of both.
+    per_long: f64,
+    per_product: f64,
     /// Empty for two filters, which then need no memory of their own.
     comb: Vec<Tooth>,
 }
@@ -52,6 +55,8 @@ impl CubicChain {
             long: long.max(short),
             short: short.min(long),
             total: long + short,
+            per_long: 0.5 / long.max(short),
+            per_product: 0.5 / (long * short),
             comb: Vec::new(),
         }
     }
@@ -163,7 +168,37 @@ impl CubicChain {
 
     /// Position and velocity after a unit step of velocity.
     pub(crate) fn response(&self, time: f64) -> (f64, f64) {
+        if time <= 0.0 {
+            return (0.0, 0.0);
+        }
+        if time >= self.total {
+            return (time - 0.5 * self.total, 1.0);
+        }
+        if self.comb.is_empty() {
+            return self.response_of_two(time);
+        }
         (self.position(time), self.velocity(time))
+    }
+
+    /// Position and velocity behind the two longest filters, within their length.
+    fn response_of_two(&self, time: f64) -> (f64, f64) {
+        let (short, double) = (self.short, self.per_long);
+        let rising = |t: f64| {
+            if t <= short {
+                let square = t * t * self.per_product;
+                (t * square * (1.0 / 3.0), square)
+            } else {
+                let position = (t * (t - short) + short * short * (1.0 / 3.0)) * double;
+                (position, (2.0 * t - short) * double)
+            }
+        };
+        let total = self.long + short;
+        if time <= 0.5 * total {
+            rising(time)
+        } else {
+            let (position, velocity) = rising(total - time);
+            (time - 0.5 * total + position, 1.0 - velocity)
+        }
     }
 
     /// Acceleration after a unit step of velocity.

@@ -257,7 +257,7 @@ impl<const N: usize> LookAhead<N> {
             self.ramp();
         }
         self.overlap_dwells();
-        if self.correct() && !capped {
+        if self.correct() && !capped && !self.in_step() {
             self.ramp();
             self.time();
         }

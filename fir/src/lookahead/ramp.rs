@@ -36,10 +36,15 @@ impl<const N: usize> LookAhead<N> {
         {
             return;
         }
-        for round in 0..ROUNDS {
-            let rising = self.rise();
-            if round > 0 && !rising || !self.fall() {
+        self.rise(0);
+        let mut until = self.pulses.len();
+        for _ in 1..ROUNDS {
+            let Some(first) = self.fall(until) else {
                 break;
+            };
+            match self.rise(first) {
+                Some(last) => until = last,
+                None => break,
             }
         }
     }
@@ -50,11 +55,12 @@ impl<const N: usize> LookAhead<N> {
         (gap, !pulse.pass || gap > 0.0)
     }
 
-    /// Keeps each pulse in step with those before it; whether anything changed.
-    fn rise(&mut self) -> bool {
+    /// Keeps each pulse from one on in step with those before it; the last one that is slower now.
+    fn rise(&mut self, from: usize) -> Option<usize> {
         let (long, total) = (self.chain.long(), self.chain.total());
         let count = self.pulses.len();
-        let mut changed = false;
+        let from = from.max(self.fixed);
+        let mut lowered = None;
         let mut clock = 0.0;
         // When the run along one arc at one feedrate began.
         let mut since = 0.0;
@@ -82,13 +88,13 @@ impl<const N: usize> LookAhead<N> {
                 }
             }
             // Turns of one arc are in step with each other.
-            while index >= self.fixed && since + long > clock {
+            while index >= from && since + long > clock {
                 let pulse = &self.pulses[at];
                 let feed = self.feed_after(at, clock);
                 if feed >= pulse.feed * (1.0 - TOO_HIGH) {
                     break;
                 }
-                changed = true;
+                lowered = Some(at);
                 since = clock;
                 let head = feed * long;
                 if !self.is_worth_a_cut(pulse, head, at + count - index) {
@@ -115,7 +121,7 @@ impl<const N: usize> LookAhead<N> {
             clock = end;
         }
         self.cuts = rest;
-        changed
+        lowered
     }
 
     /// Largest feedrate of a pulse after those before it.
@@ -151,11 +157,11 @@ impl<const N: usize> LookAhead<N> {
         feed
     }
 
-    /// Keeps each pulse in step with those after it; whether anything changed.
-    fn fall(&mut self) -> bool {
+    /// Keeps each pulse before one in step with those after it; the first one that is slower now.
+    fn fall(&mut self, before: usize) -> Option<usize> {
         let (long, total) = (self.chain.long(), self.chain.total());
         let count = self.pulses.len();
-        let mut changed = false;
+        let mut lowered = None;
         // Time runs backward from the end.
         let mut clock = 0.0;
         let mut until = 0.0;
@@ -177,7 +183,7 @@ impl<const N: usize> LookAhead<N> {
                     until = clock;
                 }
             }
-            let steady = until + long <= clock;
+            let steady = index >= before || until + long <= clock;
             if !cut {
                 let in_step = |feed: f64| feed >= pulse.feed * (1.0 - TOO_HIGH);
                 let after = self.pulses[index + 1..].iter();
@@ -198,7 +204,7 @@ impl<const N: usize> LookAhead<N> {
                 if feed >= pulse.feed * (1.0 - TOO_HIGH) {
                     break;
                 }
-                changed = true;
+                lowered = Some(index);
                 until = clock;
                 let tail = feed * long;
                 let others = if cut { done.len() } else { count - 1 - index };
@@ -233,7 +239,7 @@ impl<const N: usize> LookAhead<N> {
             self.pulses.extend(done.iter().rev());
         }
         self.cuts = done;
-        changed
+        lowered
     }
 
     /// Largest feedrate of a pulse before those after it.
