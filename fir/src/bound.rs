@@ -9,7 +9,7 @@
 //! never increases it. Not here: what is done about it.
 
 use crate::cubic::CubicChain;
-use crate::pulse::Pulse;
+use crate::pulse::{NEARLY, Pulse};
 use toolglide_kinematics::Vector;
 
 /// Most steps in the search of the instant; Newton needs three or four.
@@ -27,7 +27,7 @@ pub(crate) const TOUCH: f64 = 1e-13;
 pub(crate) struct Schedule {
     begin: Vec<f64>,
     end: Vec<f64>,
-    /// When the run of each pulse begins and ends: those that go along the same arc at the same feedrate.
+    /// When the run of each pulse begins and ends: those that go on along the same arc.
     since: Vec<f64>,
     until: Vec<f64>,
     /// Whether any pulse waits for others to leave the longest filter.
@@ -74,8 +74,12 @@ impl Schedule {
     }
 
     /// Whether a corner is in the middle of a run that fills the whole window of a chain.
+    ///
+    /// Were all feedrates the same, the window would reach as far to both sides. Where they are not, what
+    /// is faster reaches further, and the mean of what is on one side is at most a quarter of the window.
     pub(crate) fn is_steady(&self, corner: usize, chain: &CubicChain) -> bool {
-        let (half, end) = (0.5 * chain.total() + TOUCH, self.end[corner]);
+        let half = (0.5 + 0.25 * (1.0 / NEARLY - 1.0)) * chain.total();
+        let end = self.end[corner];
         end - self.since[corner] >= half && self.until[corner] - end >= half
     }
 

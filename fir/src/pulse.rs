@@ -5,6 +5,9 @@
 
 use toolglide_kinematics::{Serves, Vector};
 
+/// Share of the largest feedrate of an arc that is nearly all of it.
+pub(crate) const NEARLY: f64 = 0.9;
+
 /// A straight stretch at constant commanded feedrate, and the corner at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pulse<const N: usize> {
@@ -82,18 +85,19 @@ impl<const N: usize> Pulse<N> {
         }
     }
 
-    /// Whether the next pulse goes along the same arc at the same feedrate, no faster than the arc allows.
+    /// Whether the next pulse goes on along the same arc, both at about its largest feedrate.
     pub(crate) fn goes_on(&self, next: &Self) -> bool {
-        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
-        self.smooth
-            && same(self.feed, next.feed)
-            && same(self.tolerance, next.tolerance)
-            && next.feed <= next.limit
+        let fast = |pulse: &Self| pulse.feed >= NEARLY * pulse.limit && pulse.feed <= pulse.limit;
+        self.smooth && fast(self) && fast(next) && same(self.tolerance, next.tolerance)
     }
 
-    /// Whether, besides, the path turns no more between them than the arc does; it does where the arc ends.
+    /// Whether the next pulse goes on along the same arc at the same feedrate, and the path turns no more
+    /// between them than the arc does; it does where the arc begins and ends.
     pub(crate) fn turns_on(&self, next: &Self) -> bool {
-        self.goes_on(next) && self.turn <= self.curvature * self.length
+        self.smooth
+            && same(self.feed, next.feed)
+            && next.feed <= next.limit
+            && self.turn <= self.curvature * self.length
     }
 
     /// The parts before and after a distance.
@@ -116,4 +120,9 @@ impl<const N: usize> Pulse<N> {
         };
         (before, after)
     }
+}
+
+/// Whether two numbers have the same digits.
+fn same(a: f64, b: f64) -> bool {
+    a.to_bits() == b.to_bits()
 }
