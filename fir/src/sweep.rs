@@ -172,7 +172,7 @@ impl<const N: usize> Sweep<N> {
         let serves = self.serves();
         let start = self.state;
         self.time = knot;
-        self.integrate(duration);
+        self.state = after(&start, duration);
         self.expire();
         self.since_anchor += 1;
         self.arrive(knot);
@@ -224,22 +224,6 @@ impl<const N: usize> Sweep<N> {
             first: first.first,
             last: last.last,
         }
-    }
-
-    fn integrate(&mut self, duration: f64) {
-        let t = duration;
-        let Sample {
-            position,
-            velocity,
-            acceleration,
-            jerk,
-        } = self.state;
-        self.state = Sample {
-            position: position + (velocity + (acceleration * 0.5 + jerk * (t / 6.0)) * t) * t,
-            velocity: velocity + (acceleration + jerk * (0.5 * t)) * t,
-            acceleration: acceleration + jerk * t,
-            jerk,
-        };
     }
 
     /// Drops the pulses whose effect is over; the last one to go leaves its end behind.
@@ -311,5 +295,21 @@ impl<const N: usize> Sweep<N> {
             pulse.begin -= span;
             pulse.end -= span;
         }
+    }
+}
+
+/// The state some time later at constant jerk.
+fn after<const N: usize>(start: &Sample<N>, t: f64) -> Sample<N> {
+    let &Sample {
+        position,
+        velocity,
+        acceleration,
+        jerk,
+    } = start;
+    Sample {
+        position: position + (velocity + (acceleration * 0.5 + jerk * (t / 6.0)) * t) * t,
+        velocity: velocity + (acceleration + jerk * (0.5 * t)) * t,
+        acceleration: acceleration + jerk * t,
+        jerk,
     }
 }

@@ -20,9 +20,11 @@ struct Step<const N: usize> {
 
 /// A delay at which the commanded velocity enters the jerk.
 #[derive(Clone, Copy, Debug)]
-struct Tap {
+struct Tap<const N: usize> {
     delay: f64,
     weight: f64,
+    /// What the last step to arrive contributes to the jerk.
+    held: Vector<N>,
     /// Index of the next step to arrive.
     next: usize,
     /// When it arrives; never while it is not known.
@@ -32,7 +34,7 @@ struct Tap {
 /// All delays of a chain, and the steps that have not passed all of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Taps<const N: usize> {
-    taps: Vec<Tap>,
+    taps: Vec<Tap<N>>,
     steps: VecDeque<Step<N>>,
     /// When the next step arrives at a tap; never while none is known.
     due: f64,
@@ -51,8 +53,6 @@ impl<const N: usize> Taps<N> {
     /// Begins afresh at rest.
     pub(crate) fn restart(&mut self, chain: &CubicChain) {
         self.steps.clear();
-        // What was commanded before the first step.
-        self.push(f64::NEG_INFINITY, Vector::zeros());
         let (long, short) = (chain.long(), chain.short());
         let product = long * short;
         self.taps.clear();
@@ -62,7 +62,8 @@ impl<const N: usize> Taps<N> {
                 self.taps.push(Tap {
                     delay: tooth.delay + delay,
                     weight: sign * tooth.weight / product,
-                    next: 1,
+                    held: Vector::zeros(),
+                    next: 0,
                     due: f64::INFINITY,
                 });
             }
@@ -97,18 +98,21 @@ impl<const N: usize> Taps<N> {
             while tap.due <= knot + SAME_INSTANT {
                 // Instants that are one are not quite the same: what the jerk does too early.
                 let early = tap.due - knot;
-                let change = self.steps[tap.next].velocity - self.steps[tap.next - 1].velocity;
-                ahead += change * (tap.weight * early);
+                let held = self.steps[tap.next].velocity * tap.weight;
+                ahead += (held - tap.held) * early;
+                tap.held = held;
                 tap.next += 1;
                 let next = self.steps.get(tap.next);
                 tap.due = next.map_or(f64::INFINITY, |step| step.time + tap.delay);
             }
             self.due = self.due.min(tap.due);
-            oldest = oldest.min(tap.next - 1);
-            jerk += self.steps[tap.next - 1].velocity * tap.weight;
+            oldest = oldest.min(tap.next);
+            jerk += tap.held;
         }
         if oldest > 0 {
-            self.steps.drain(..oldest);
+            for _ in 0..oldest {
+                self.steps.pop_front();
+            }
             for tap in &mut self.taps {
                 tap.next -= oldest;
             }
