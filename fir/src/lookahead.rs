@@ -50,6 +50,8 @@ pub(crate) struct LookAhead<const N: usize> {
     chain: CubicChain,
     /// Largest change of velocity of each axis within the window.
     change: Vector<N>,
+    /// One over it.
+    per_change: Vector<N>,
     pulses: Vec<Pulse<N>>,
     arcs: Arcs<N>,
     /// What waited before chains were tried.
@@ -92,8 +94,10 @@ impl<const N: usize> LookAhead<N> {
         let chosen = chain.is_none();
         let fastest = limits.velocity().max();
         let chain = chain.unwrap_or_else(|| designed_for(&limits, fastest));
+        let change = largest_change(&limits, &chain);
         Self {
-            change: largest_change(&limits, &chain),
+            change,
+            per_change: change.map(f64::recip),
             limits,
             chosen,
             chain,
@@ -257,12 +261,15 @@ impl<const N: usize> LookAhead<N> {
             self.ramp();
         }
         self.overlap_dwells();
-        if self.correct() && !capped && !self.in_step() {
-            self.ramp();
-            self.time();
+        let mut in_step = false;
+        if self.correct() && !capped {
+            in_step = self.in_step();
+            if !in_step {
+                self.ramp();
+                self.time();
+            }
         }
-        self.stop_where_faster();
-        self.in_step()
+        self.stop_where_faster() || in_step || self.in_step()
     }
 
     fn time(&mut self) {

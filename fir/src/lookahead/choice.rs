@@ -9,7 +9,6 @@ use super::ramp::STEPS;
 use crate::command::Command;
 use crate::cubic::CubicChain;
 use crate::settings::{designed_for, largest_change};
-use toolglide_kinematics::largest_multiple;
 
 /// Feedrates that chains are designed for: that of the program, and each half of the one before.
 const DESIGNS: u32 = 9;
@@ -109,6 +108,7 @@ impl<const N: usize> LookAhead<N> {
     /// Other filters from here on; only when nothing was handed out.
     fn use_chain(&mut self, chain: CubicChain) {
         self.change = largest_change(&self.limits, &chain);
+        self.per_change = self.change.map(f64::recip);
         self.chain = chain;
         self.arcs.pace(&self.chain, &self.change);
         for index in 0..self.pulses.len() {
@@ -120,10 +120,9 @@ impl<const N: usize> LookAhead<N> {
     pub(super) fn limit(&mut self, index: usize) {
         let pulse = &mut self.pulses[index];
         let feedrate = pulse.feedrate;
-        pulse.step = feedrate;
-        if (pulse.direction.abs() * feedrate - self.change).max() > 0.0 {
-            pulse.step = feedrate.min(largest_multiple(&pulse.direction, &self.change));
-        }
+        // The share of what axes may change their velocity by, per feedrate.
+        let share = pulse.direction.abs().component_mul(&self.per_change).max();
+        pulse.step = feedrate.min(1.0 / share);
         let most = feedrate.min(STEPS * pulse.step);
         pulse.limit = most;
         if let Some(arc) = pulse.arc {

@@ -64,12 +64,16 @@ impl<const N: usize> LookAhead<N> {
         let mut clock = 0.0;
         // When the run along one arc at one feedrate began.
         let mut since = 0.0;
+        // What is gone before the first of them begins has no times.
+        let first = self.first_beside(from);
         self.times.clear();
+        self.times
+            .resize(first, (f64::NEG_INFINITY, f64::NEG_INFINITY));
         // What comes after the first cut.
         let mut rest = std::mem::take(&mut self.cuts);
         rest.clear();
         let mut cut = None;
-        for index in 0..count {
+        for index in first..count {
             let mut at = index;
             if let Some(cut) = cut {
                 at = self.pulses.len();
@@ -122,6 +126,17 @@ impl<const N: usize> LookAhead<N> {
         }
         self.cuts = rest;
         lowered
+    }
+
+    /// The first pulse that may be in the longest filter together with one.
+    fn first_beside(&self, pulse: usize) -> usize {
+        let mut time = 0.0;
+        let mut first = pulse;
+        while first > 0 && time <= self.chain.long() + TOUCH {
+            first -= 1;
+            time += self.pulses[first].length / self.pulses[first].feed;
+        }
+        first
     }
 
     /// Largest feedrate of a pulse after those before it.
@@ -283,6 +298,10 @@ impl<const N: usize> LookAhead<N> {
     /// Largest feedrate up to `most` with which a pulse may be in the longest filter together with
     /// another one.
     fn feed_beside(&self, most: f64, pulse: &Pulse<N>, other: &Pulse<N>) -> f64 {
+        let gap = pulse.direction * most - other.direction * other.feed;
+        if (gap.abs() - self.change).max() <= 0.0 {
+            return most;
+        }
         let mut feed = most;
         for axis in 0..N {
             let share = pulse.direction[axis];

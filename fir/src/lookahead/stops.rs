@@ -6,8 +6,9 @@ use super::LookAhead;
 use crate::pulse::Pulse;
 
 impl<const N: usize> LookAhead<N> {
-    /// Stops at every corner where that takes less time; longer dwells are always safe.
-    pub(super) fn stop_where_faster(&mut self) {
+    /// Stops at every corner where that takes less time and keeps in step; whether it does. Longer dwells
+    /// are always safe.
+    pub(super) fn stop_where_faster(&mut self) -> bool {
         let total = self.chain.total();
         let first = self.fixed.saturating_sub(1);
         let end = if self.fixed > 0 {
@@ -16,7 +17,7 @@ impl<const N: usize> LookAhead<N> {
             0.0
         };
         let Some(last) = self.pulses.len().checked_sub(1) else {
-            return;
+            return false;
         };
         let planned = self.schedule.end(last) - end;
         let moving = self.least_time();
@@ -26,7 +27,7 @@ impl<const N: usize> LookAhead<N> {
         let mut dwelling = 0.0;
         stops.for_each(|_| dwelling += total);
         if dwelling <= 0.0 || planned <= moving + dwelling {
-            return;
+            return false;
         }
         self.kept.clear();
         self.kept.extend_from_slice(&self.pulses);
@@ -45,12 +46,13 @@ impl<const N: usize> LookAhead<N> {
                 break;
             }
             if self.in_step() && (rests || self.holds()) {
-                return;
+                return true;
             }
         }
         std::mem::swap(&mut self.pulses, &mut self.kept);
         self.capped = capped;
         self.time();
+        false
     }
 
     /// Stops at every corner from the beginning of a pulse on.
