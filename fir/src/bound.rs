@@ -27,9 +27,8 @@ pub(crate) const TOUCH: f64 = 1e-13;
 pub(crate) struct Schedule {
     begin: Vec<f64>,
     end: Vec<f64>,
-    /// When the run of each pulse begins and ends: those that go on along the same arc.
+    /// When the run of each pulse begins: those that go on along the same arc.
     since: Vec<f64>,
-    until: Vec<f64>,
     /// Whether any pulse waits for others to leave the longest filter.
     waits: bool,
     /// Progress of the pulses in the window of the last corner asked for.
@@ -50,7 +49,6 @@ impl Schedule {
             begin: room(),
             end: room(),
             since: room(),
-            until: room(),
             waits: false,
             progress: room(),
             shares: room(),
@@ -77,10 +75,18 @@ impl Schedule {
     ///
     /// Were all feedrates the same, the window would reach as far to both sides. Where they are not, what
     /// is faster reaches further, and the mean of what is on one side is at most a quarter of the window.
-    pub(crate) fn is_steady(&self, corner: usize, chain: &CubicChain) -> bool {
+    ///
+    /// `ahead` is where the window of a corner before this one ended.
+    pub(crate) fn is_steady(&self, corner: usize, chain: &CubicChain, ahead: &mut usize) -> bool {
         let half = (0.5 + 0.25 * (1.0 / NEARLY - 1.0)) * chain.total();
-        let end = self.end[corner];
-        end - self.since[corner] >= half && self.until[corner] - end >= half
+        let (since, end) = (self.since[corner], self.end[corner]);
+        if end - since < half {
+            return false;
+        }
+        while *ahead < self.end.len() && self.end[*ahead] - end < half {
+            *ahead += 1;
+        }
+        self.since.get(*ahead).is_some_and(|&other| other <= since)
     }
 
     /// The corners that contributed to the bound asked for last, with their shares.
@@ -196,17 +202,6 @@ impl Schedule {
             self.since.push(since);
             clock += pulse.length / pulse.feed;
             self.end.push(clock);
-        }
-        self.find_ends_of_runs();
-    }
-
-    fn find_ends_of_runs(&mut self) {
-        self.until.clear();
-        self.until.extend_from_slice(&self.end);
-        for index in (1..self.until.len()).rev() {
-            if self.since[index] < self.begin[index] {
-                self.until[index - 1] = self.until[index];
-            }
         }
     }
 

@@ -52,12 +52,13 @@ impl<const N: usize> LookAhead<N> {
             self.longer.clear();
             self.longer.resize(count, 1.0);
             let mut broken = false;
+            let mut ahead = 0;
             for corner in 0..corners {
                 if self.standing[corner] != Standing::Open {
                     continue;
                 }
                 // The bound is largest where the path turns.
-                if self.pulses[corner].part || self.is_settled(corner) {
+                if self.pulses[corner].part || self.is_settled(corner, &mut ahead) {
                     self.standing[corner] = Standing::Settled;
                     continue;
                 }
@@ -86,8 +87,9 @@ impl<const N: usize> LookAhead<N> {
 
     /// Whether the bound holds at every corner.
     pub(super) fn holds(&mut self) -> bool {
+        let mut ahead = 0;
         (0..self.pulses.len().saturating_sub(1)).all(|corner| {
-            if self.pulses[corner].part || self.is_settled(corner) {
+            if self.pulses[corner].part || self.is_settled(corner, &mut ahead) {
                 return true;
             }
             let bound = self.schedule.at_corner(&self.pulses, &self.chain, corner);
@@ -96,7 +98,7 @@ impl<const N: usize> LookAhead<N> {
     }
 
     /// Whether nothing that may still change is in the window of a corner, or nothing but one arc.
-    fn is_settled(&self, corner: usize) -> bool {
+    fn is_settled(&self, corner: usize, ahead: &mut usize) -> bool {
         let total = self.chain.total();
         if self.fixed > 0
             && corner + 1 < self.fixed
@@ -104,7 +106,7 @@ impl<const N: usize> LookAhead<N> {
         {
             return true;
         }
-        self.schedule.is_steady(corner, &self.chain)
+        self.schedule.is_steady(corner, &self.chain, ahead)
     }
 
     /// Notes what the corners in the window must do about a bound that is broken by a factor.

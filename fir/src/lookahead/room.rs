@@ -13,6 +13,10 @@ use crate::bend::STEADY_EXCESS;
 /// window: where half of it is on the arc, a sixth is wanted, and more with a dwell.
 const UNUSED: f64 = 1.0 / 3.0;
 
+/// Share of the tolerance that is expected to be left unused on an arc near its ends: what two arcs that
+/// meet without a corner leave there, a little more.
+const LESS_BESIDE: f64 = 0.018;
+
 impl<const N: usize> LookAhead<N> {
     fn tolerance(&self, corner: usize) -> f64 {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
@@ -24,7 +28,7 @@ impl<const N: usize> LookAhead<N> {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let tolerance = self.tolerance(corner);
         if before.smooth {
-            STEADY_EXCESS * tolerance + before.outward
+            (STEADY_EXCESS - LESS_BESIDE) * tolerance + before.outward
         } else {
             tolerance - UNUSED * before.sagitta.max(after.sagitta)
         }
