@@ -120,9 +120,10 @@ impl<const N: usize> LookAhead<N> {
     pub(super) fn limit(&mut self, index: usize) {
         let pulse = &mut self.pulses[index];
         let feedrate = pulse.feedrate;
-        // The share of what axes may change their velocity by, per feedrate.
-        let share = pulse.direction.abs().component_mul(&self.per_change).max();
-        pulse.step = feedrate.min(1.0 / share);
+        // The axis that may change its velocity by the least, beside its share of the feedrate.
+        let direction = pulse.direction.abs();
+        let (axis, _) = direction.component_mul(&self.per_change).argmax();
+        pulse.step = feedrate.min(self.change[axis] / direction[axis]);
         let most = feedrate.min(STEPS * pulse.step);
         pulse.limit = most;
         if let Some(arc) = pulse.arc {

@@ -11,10 +11,6 @@ use toolglide_kinematics::numeric::LIMIT_SLACK;
 /// Corners that contribute less than this share of the tolerance are left as they are.
 const SHARE_THAT_COUNTS: f64 = 0.02;
 
-/// What is corrected beyond what is needed, as a share of it, and at most.
-const MORE: f64 = 0.2;
-const MOST_MORE: f64 = 0.002;
-
 /// Rounds of corrections; after that dwells are lengthened only, which always succeeds.
 const ROUNDS: u32 = 40;
 
@@ -112,8 +108,7 @@ impl<const N: usize> LookAhead<N> {
     /// Notes what the corners in the window must do about a bound that is broken by a factor.
     fn blame(&mut self, excess: f64, allowed: f64, round: u32) {
         let least = SHARE_THAT_COUNTS * allowed;
-        // A little more than needed, so that what is nearly right is right the next time.
-        let excess = (excess + (MORE * (excess - 1.0)).min(MOST_MORE)).min(4.0);
+        let excess = excess.min(4.0);
         let mut anything = false;
         let first_free = self.fixed.saturating_sub(1);
         for (corner, contribution) in self.schedule.contributions() {
