@@ -72,7 +72,7 @@ impl<const N: usize> LookAhead<N> {
         let (mut best_design, mut best_capped) = (design, false);
         let mut worse = 0;
         for number in 0..DESIGNS {
-            let takes = self.try_design(design);
+            let takes = self.try_design(design, best);
             if number == 0 || takes < best {
                 (best, best_design, best_capped) = (takes, design, self.planned_capped);
                 std::mem::swap(&mut self.pulses, &mut self.best);
@@ -96,11 +96,20 @@ impl<const N: usize> LookAhead<N> {
         }
     }
 
-    /// How long what waits takes behind the chain that is designed for a feedrate.
-    fn try_design(&mut self, feed: f64) -> f64 {
+    /// How long what waits takes behind the chain that is designed for a feedrate; less where it is more
+    /// than what the `best` one takes.
+    fn try_design(&mut self, feed: f64, best: f64) -> f64 {
         self.pulses.clear();
         self.pulses.extend_from_slice(&self.waiting);
         self.use_chain(designed_for(&self.limits, feed));
+        let moving: f64 = self
+            .pulses
+            .iter()
+            .map(|pulse| pulse.length / pulse.limit)
+            .sum();
+        if moving + self.chain.total() >= best {
+            return moving + self.chain.total();
+        }
         self.solve();
         self.schedule.end(self.pulses.len() - 1) + self.chain.total()
     }
