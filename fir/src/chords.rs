@@ -131,3 +131,62 @@ impl<const N: usize> Chords<N> {
         Some((vertex, self.next <= self.count))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arc(end: [f64; 3], counter_clockwise: bool, turns: u32) -> Arc<3> {
+        let (start, end) = (Vector::from([1.0, 0.0, 0.0]), Vector::from(end));
+        Arc::about(
+            start,
+            end,
+            Vector::zeros(),
+            [0, 1],
+            counter_clockwise,
+            turns,
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn no_chord_turns_by_more_or_is_shorter_than_what_is_said_of_them_all() {
+        for (what, arc) in [
+            ("a quarter", arc([0.0, 1.0, 0.0], true, 0)),
+            ("a full circle", arc([1.0, 0.0, 0.0], false, 0)),
+            ("a helix", arc([0.0, -1.0, 3.0], true, 2)),
+            ("a spiral outward", arc([-1.0009, 0.0, 0.0], true, 0)),
+            ("a spiral inward", arc([-0.9991, 0.0, 0.0], false, 1)),
+            ("a short one inward", arc([0.9992, 0.02, 0.0], true, 0)),
+        ] {
+            for tolerance in [1e-4, 0.01, 0.5] {
+                let chords = Chords::new(arc, tolerance);
+                let mut from = arc.start();
+                let spans: Vec<_> = chords
+                    .vertices()
+                    .map(|vertex| std::mem::replace(&mut from, vertex) - vertex)
+                    .collect();
+                let shortest = spans
+                    .iter()
+                    .map(|span| span.norm())
+                    .fold(f64::INFINITY, f64::min);
+                let gap = chords.shortest() - shortest;
+                assert!(
+                    gap.abs() < 1e-12,
+                    "{what} at {tolerance}: {gap} from the shortest"
+                );
+                let Some(inner) = spans.get(1..spans.len() - 1) else {
+                    continue;
+                };
+                for pair in inner.windows(2) {
+                    let turn = (pair[1].normalize() - pair[0].normalize()).norm();
+                    let most = chords.turn();
+                    assert!(
+                        turn <= most * (1.0 + 1e-9),
+                        "{what} at {tolerance}: {turn} > {most}"
+                    );
+                }
+            }
+        }
+    }
+}
