@@ -173,7 +173,7 @@ impl<const N: usize> LookAhead<N> {
     }
 
     /// Keeps each pulse before one in step with those after it; the first one that is slower now.
-    fn fall(&mut self, before: usize) -> Option<usize> {
+    fn fall(&mut self, last: usize) -> Option<usize> {
         let (long, total) = (self.chain.long(), self.chain.total());
         let count = self.pulses.len();
         let mut lowered = None;
@@ -198,7 +198,7 @@ impl<const N: usize> LookAhead<N> {
                     until = clock;
                 }
             }
-            let steady = index >= before || until + long <= clock;
+            let steady = index >= last || until + long <= clock;
             if !cut {
                 let in_step = |feed: f64| feed >= pulse.feed * (1.0 - TOO_HIGH);
                 let after = self.pulses[index + 1..].iter();
@@ -210,8 +210,10 @@ impl<const N: usize> LookAhead<N> {
                 }
             }
             let mut pulse = *pulse;
-            while !steady {
-                let feed = if cut {
+            loop {
+                let feed = if steady {
+                    pulse.feed
+                } else if cut {
                     self.feed_before(&pulse, done.iter().rev(), clock)
                 } else {
                     self.feed_before(&pulse, self.pulses[index + 1..].iter(), clock)
