@@ -10,7 +10,7 @@ pub(crate) use self::side::{Centre, Reach, Side, Sums};
 use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 
 /// A slack starts at least this far inside, in shares of the bound.
-const LEAST_SLACK: f64 = 0.1;
+pub(crate) const LEAST_SLACK: f64 = 0.1;
 
 /// A vector lies inside its cone by at least this share of its length: some rounding of a step that
 /// would have ended nearer.
@@ -185,6 +185,7 @@ impl<const N: usize> ConeWeight<N> {
 pub(crate) struct Cone<const N: usize> {
     slack: Pair<N>,
     multiplier: Pair<N>,
+    first_multiplier: Pair<N>,
     residual: Pair<N>,
     target: Pair<N>,
     slack_change: Pair<N>,
@@ -197,6 +198,7 @@ impl<const N: usize> Default for Cone<N> {
         Self {
             slack: Pair::UNIT,
             multiplier: Pair::UNIT,
+            first_multiplier: Pair::UNIT,
             residual: Pair::UNIT,
             target: Pair::UNIT,
             slack_change: Pair::UNIT,
@@ -220,6 +222,7 @@ impl<const N: usize> Cone<N> {
             head: self.slack.head * by_determinant,
             tail: self.slack.tail * -by_determinant,
         };
+        self.first_multiplier = self.multiplier;
         self.slack.head - value.head
     }
 
@@ -273,7 +276,9 @@ impl<const N: usize> Cone<N> {
             .scaling
             .down(&scaled.divide(self.scaling.determinant, &product));
         let residual = self.scaling.weight().times(&self.residual);
-        residual.plus(-1.0, &self.target)
+        residual
+            .plus(-1.0, &self.target)
+            .plus(centre.kept, &self.first_multiplier)
     }
 
     /// As [`Side::aim`].

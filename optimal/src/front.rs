@@ -15,9 +15,11 @@
 
 mod cost;
 mod form;
+mod root;
 
 pub(crate) use self::cost::Cost;
 pub(crate) use self::form::Form;
+use self::root::Root;
 use crate::spline::State;
 use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 
@@ -141,14 +143,14 @@ impl<const N: usize> Gradient<N> {
         }
         let weights = interval.jerk;
         let last = self.state[2] + jerk.point * weights[3];
-        gain.offset = gain.inverse * last;
+        gain.offset = gain.root.share(last);
         self.state = [
-            jerk.point * weights[0] - gain.state[0].tr_mul(&last),
-            self.state[0] + jerk.point * weights[1] - gain.state[1].tr_mul(&last),
-            self.state[1] + jerk.point * weights[2] - gain.state[2].tr_mul(&last),
+            jerk.point * weights[0] - gain.state[0].tr_mul(&gain.offset),
+            self.state[0] + jerk.point * weights[1] - gain.state[1].tr_mul(&gain.offset),
+            self.state[1] + jerk.point * weights[2] - gain.state[2].tr_mul(&gain.offset),
         ];
-        self.stretch -= gain.stretch.dot(&last);
-        self.excess += jerk.excess - gain.excess.dot(&last);
+        self.stretch -= gain.stretch.dot(&gain.offset);
+        self.excess += jerk.excess - gain.excess.dot(&gain.offset);
     }
 }
 
@@ -158,7 +160,7 @@ pub(crate) struct Gain<const N: usize> {
     state: [Square<N>; 3],
     stretch: Vector<N>,
     excess: Vector<N>,
-    inverse: Square<N>,
+    root: Root<N>,
     offset: Vector<N>,
     /// What the miss of the interval adds to the slope.
     push: Gradient<N>,
@@ -170,7 +172,7 @@ impl<const N: usize> Default for Gain<N> {
             state: [Square::zeros(); 3],
             stretch: Vector::zeros(),
             excess: Vector::zeros(),
-            inverse: Square::zeros(),
+            root: Root::default(),
             offset: Vector::zeros(),
             push: Gradient::default(),
         }
@@ -188,10 +190,11 @@ impl<const N: usize> Gain<N> {
         excess: f64,
         miss: &[Vector<N>; 3],
     ) -> (Vector<N>, [Vector<N>; 3]) {
-        let mut last = -(self.offset + self.stretch * stretch + self.excess * excess);
+        let mut last = self.offset + self.stretch * stretch + self.excess * excess;
         for (gain, state) in self.state.iter().zip(state) {
-            last -= gain * state;
+            last += gain * state;
         }
+        let last = -self.root.back(last);
         let weights = interval.jerk;
         let jerk = state[0] * weights[0]
             + state[1] * weights[1]

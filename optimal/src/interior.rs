@@ -12,10 +12,13 @@
 mod conic;
 #[cfg(test)]
 mod dense;
+#[cfg(test)]
+mod digits;
 mod passes;
+mod start;
 mod sweep;
 
-use self::passes::{Advance, Aim, Predict, Start};
+use self::passes::{Advance, Aim, Predict};
 use self::sweep::Tail;
 use crate::cone::{Centre, Reach, Side, Sums};
 use crate::front::{Gain, StretchGain};
@@ -30,11 +33,13 @@ const MOST_ITERATIONS: u32 = 50;
 /// Where the predicted step is shorter, its second order says little about a step that can be gone.
 const SHORT_STEP: f64 = 0.1;
 
+/// After a shorter step the next one does not make up for all that the multipliers miss, but for as much as
+/// it brings slacks and multipliers nearer to their bounds: what they miss may be what no longer step can
+/// make up for.
+const LOST_STEP: f64 = 0.05;
+
 /// Share of the way to the nearest bound that is gone.
 const STEP_SHARE: f64 = 0.995;
-
-/// The excess starts here, or so much higher that all bounds are kept.
-const FIRST_EXCESS: f64 = 0.1;
 
 /// Least share of the complementarity to aim at.
 const LEAST_CENTERING: f64 = 1e-6;
@@ -145,7 +150,7 @@ impl<const N: usize> Interior<N> {
         let unit = degree / ROWS_PER_UNIT;
         self.prepare(problem);
         let shortening = problem.hold_durations();
-        self.straighten(problem, goal);
+        let straight = self.straighten(problem, goal);
         problem.free_durations(shortening);
         let problem = &*problem;
         let floor = self.reset(problem, goal);
@@ -153,9 +158,9 @@ impl<const N: usize> Interior<N> {
             ending: Ending::Stalled,
             iterations: 0,
             gap: f64::INFINITY,
-            miss: 1.0,
+            miss: if straight { 0.0 } else { 1.0 },
         };
-        let (mut unbound, mut best, mut stalled) = (1.0_f64, f64::INFINITY, 0);
+        let (mut unbound, mut best, mut stalled, mut last) = (1.0_f64, f64::INFINITY, 0, 1.0_f64);
         loop {
             let mut sums = Sums::default();
             let weighed = self.weigh(problem, goal, unit, precision.smoothing, floor, &mut sums);
@@ -193,8 +198,14 @@ impl<const N: usize> Interior<N> {
                 + dual * reach.by_multiplier
                 + primal * dual * reach.by_both;
             let share = (predicted / sums.complementarity).clamp(0.0, 1.0).powi(3);
+            let share = share.max(LEAST_CENTERING);
             let centre = Centre {
-                complementarity: share.max(LEAST_CENTERING) * sums.complementarity / degree,
+                kept: if last < LOST_STEP {
+                    share * unbound
+                } else {
+                    0.0
+                },
+                complementarity: share * sums.complementarity / degree,
                 second_order: if primal.min(dual) < SHORT_STEP {
                     primal * dual
                 } else {
@@ -212,94 +223,14 @@ impl<const N: usize> Interior<N> {
             self.aim(problem, &mut reach);
             let primal = (STEP_SHARE / reach.primal.max(STEP_SHARE)).min(1.0);
             let dual = (STEP_SHARE / reach.dual.max(STEP_SHARE)).min(1.0);
+            last = primal.max(dual);
             self.advance(problem, primal, dual);
             if outcome.miss.max(unbound) > SETTLED && primal.max(dual) > STALLED_STEP {
                 stalled = 0;
             }
             outcome.miss *= 1.0 - primal;
-            unbound *= 1.0 - dual;
+            unbound += dual * (centre.kept - unbound);
         }
-    }
-
-    /// Brings the workspace to size, and the ends of the motion to where they belong.
-    fn prepare(&mut self, problem: &Problem<N>) {
-        let (steps, segments) = (problem.steps(), problem.segments());
-        self.rows.clear();
-        self.rows.resize(steps + 1, NodeRows::default());
-        self.misses.resize(steps, [Vector::zeros(); 3]);
-        self.gains.resize(steps, Gain::default());
-        self.state_changes.clear();
-        self.state_changes.resize(steps + 1, [Vector::zeros(); 3]);
-        self.jerk_changes.resize(steps, Vector::zeros());
-        self.states[0] = *problem.start();
-        self.states[steps] = *problem.end();
-        self.stretches.clear();
-        self.stretches.resize(segments, 0.0);
-        self.stretch_changes.clear();
-        self.stretch_changes.resize(segments, 0.0);
-        self.stretch_gains.resize(segments, StretchGain::default());
-        self.stretch_rows.resize(segments, [Side::default(); 2]);
-        self.excess = 0.0;
-        self.excess_row = Side::default();
-    }
-
-    /// Makes the motion obey its dynamics: of all that do, the one that lies deepest inside its
-    /// bounds in the mean square.
-    fn straighten(&mut self, problem: &Problem<N>, goal: Goal) {
-        if self.weigh(problem, goal, 0.0, 0.0, 0.0, &mut Sums::default()) {
-            self.go(problem);
-            for (state, change) in self.states.iter_mut().zip(&self.state_changes) {
-                for (value, change) in state.iter_mut().zip(change) {
-                    *value += change;
-                }
-            }
-            for (jerk, change) in self.jerks.iter_mut().zip(&self.jerk_changes) {
-                *jerk += change;
-            }
-        }
-    }
-
-    /// Starts all slacks and multipliers; gives the least excess.
-    fn reset(&mut self, problem: &Problem<N>, goal: Goal) -> f64 {
-        for (rows, trust) in self.stretch_rows.iter_mut().zip(&self.trust) {
-            for row in rows {
-                row.reset(*trust);
-            }
-        }
-        let floor = match goal {
-            Goal::Shorten { .. } => 0.0,
-            Goal::Restore { .. } => -0.5,
-        };
-        self.excess = FIRST_EXCESS;
-        self.excess += self.reset_rows(problem);
-        self.reset_rows(problem);
-        self.excess_row.reset(self.excess - floor);
-        floor
-    }
-
-    /// Starts the rows of all nodes at the excess; gives how much more they need.
-    fn reset_rows(&mut self, problem: &Problem<N>) -> f64 {
-        let steps = problem.steps();
-        let mut needed = 0.0_f64;
-        for node in 0..=steps {
-            let mut start = Start {
-                state: &self.states[node],
-                excess: self.excess,
-                needed,
-            };
-            let rows = &mut self.rows[node];
-            if node < steps {
-                let jerk = &self.jerks[node];
-                let more = rows.jerk.reset(problem.by_jerk(), jerk, self.excess);
-                start.needed = start.needed.max(more);
-                problem.visit_ahead(node, rows, &mut start);
-            }
-            if node > 0 {
-                problem.visit_behind(node, rows, &mut start);
-            }
-            needed = start.needed;
-        }
-        needed
     }
 
     fn each<F>(&mut self, problem: &Problem<N>, mut with: F)

@@ -35,6 +35,8 @@ pub(crate) struct Centre {
     pub(crate) complementarity: f64,
     /// Share of the second order of the predicted step that is corrected.
     pub(crate) second_order: f64,
+    /// Share of what the first multipliers missed that the step leaves.
+    pub(crate) kept: f64,
 }
 
 /// One inequality: a quantity that must stay positive.
@@ -42,6 +44,8 @@ pub(crate) struct Centre {
 pub(crate) struct Side {
     slack: f64,
     multiplier: f64,
+    /// What the multiplier started at: what it missed then is what may be left for later.
+    first_multiplier: f64,
     residual: f64,
     weight: f64,
     target: f64,
@@ -54,6 +58,7 @@ impl Default for Side {
         Self {
             slack: 1.0,
             multiplier: 1.0,
+            first_multiplier: 1.0,
             residual: 0.0,
             weight: 1.0,
             target: 0.0,
@@ -66,8 +71,14 @@ impl Default for Side {
 impl Side {
     /// Starts at the value of the quantity, or inside where that is not; gives what is missing.
     pub(crate) fn reset(&mut self, value: f64) -> f64 {
-        self.slack = value.max(LEAST_SLACK);
+        self.reset_inside(value, LEAST_SLACK)
+    }
+
+    /// The same where inside is above `least`.
+    pub(crate) fn reset_inside(&mut self, value: f64, least: f64) -> f64 {
+        self.slack = value.max(least);
         self.multiplier = 1.0 / self.slack;
+        self.first_multiplier = self.multiplier;
         self.slack - value
     }
 
@@ -100,7 +111,7 @@ impl Side {
     #[inline(always)]
     pub(crate) fn correct(&mut self, centre: Centre) -> f64 {
         self.target = (centre.complementarity - centre.second_order * self.target) / self.slack;
-        self.weight * self.residual - self.target
+        self.weight * self.residual - self.target + centre.kept * self.first_multiplier
     }
 
     /// Takes the change of the quantity in the final step.

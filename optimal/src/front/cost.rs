@@ -7,7 +7,7 @@
     reason = "the indices of blocks run over several arrays at once"
 )]
 
-use super::{Chain, Gain, Gradient, Interval, Local, ROUNDING, Square, StretchGain};
+use super::{Chain, Gain, Gradient, Interval, Local, ROUNDING, Root, Square, StretchGain};
 use crate::spline::State;
 use toolglide_kinematics::Vector;
 
@@ -120,21 +120,18 @@ impl<const N: usize> Cost<N> {
         ] = self.blocks;
         let own = |one: usize, two: usize| jerk.point * (weights[one] * weights[two]);
         // What is eliminated, and how it goes with the other three.
-        gain.inverse = inverse(&last_last, &own(3, 3))?;
+        let root = Root::of(&last_last, &own(3, 3))?;
         let rows = [
             own(0, 3),
             one_last.transpose() + own(1, 3),
             two_last.transpose() + own(2, 3),
         ];
-        let stretch = self.by_stretch[2];
-        let excess = self.by_excess[2] + jerk.mixed * weights[3];
-        let slope = self.slope.state[2] + jerk.slope.point * weights[3];
-        for (state, row) in gain.state.iter_mut().zip(&rows) {
-            *state = gain.inverse * row;
-        }
-        gain.stretch = gain.inverse * stretch;
-        gain.excess = gain.inverse * excess;
-        gain.offset = gain.inverse * slope;
+        // In shares of the root: what is subtracted below are squares, which keep their sign.
+        gain.state = rows.map(|row| root.share(row));
+        gain.stretch = root.share(self.by_stretch[2]);
+        gain.excess = root.share(self.by_excess[2] + jerk.mixed * weights[3]);
+        gain.offset = root.share(self.slope.state[2] + jerk.slope.point * weights[3]);
+        gain.root = root;
         self.blocks = [
             [own(0, 0), own(0, 1), own(0, 2)],
             [Square::zeros(), one_one + own(1, 1), one_two + own(1, 2)],
@@ -154,11 +151,11 @@ impl<const N: usize> Cost<N> {
         let whole = [0, 1, 2].map(|one| self.blocks[one][one].diagonal());
         for one in 0..3 {
             for two in one..3 {
-                self.blocks[one][two] -= rows[one].tr_mul(&gain.state[two]);
+                self.blocks[one][two] -= gain.state[one].tr_mul(&gain.state[two]);
             }
-            self.by_stretch[one] -= rows[one].tr_mul(&gain.stretch);
-            self.by_excess[one] -= rows[one].tr_mul(&gain.excess);
-            self.slope.state[one] -= rows[one].tr_mul(&gain.offset);
+            self.by_stretch[one] -= gain.state[one].tr_mul(&gain.stretch);
+            self.by_excess[one] -= gain.state[one].tr_mul(&gain.excess);
+            self.slope.state[one] -= gain.state[one].tr_mul(&gain.offset);
         }
         // Rounding differs on both sides of the diagonal; unchecked, the difference multiplies.
         for one in 0..3 {
@@ -169,11 +166,11 @@ impl<const N: usize> Cost<N> {
             }
             self.blocks[one][one] = block;
         }
-        self.stretch -= stretch.dot(&gain.stretch);
-        self.mixed -= stretch.dot(&gain.excess);
-        self.excess += jerk.excess - excess.dot(&gain.excess);
-        self.slope.stretch -= stretch.dot(&gain.offset);
-        self.slope.excess += jerk.slope.excess - excess.dot(&gain.offset);
+        self.stretch -= gain.stretch.norm_squared();
+        self.mixed -= gain.stretch.dot(&gain.excess);
+        self.excess += jerk.excess - gain.excess.norm_squared();
+        self.slope.stretch -= gain.stretch.dot(&gain.offset);
+        self.slope.excess += jerk.slope.excess - gain.excess.dot(&gain.offset);
         Some(gain)
     }
 
@@ -205,32 +202,4 @@ impl<const N: usize> Cost<N> {
         self.mixed = 0.0;
         Some(gain)
     }
-}
-
-/// Inverse of a positive semidefinite matrix and a positive `diagonal`, which no pivot falls short
-/// of but by rounding; `None` where there is no number.
-#[inline(always)]
-fn inverse<const N: usize>(of: &Square<N>, diagonal: &Square<N>) -> Option<Square<N>> {
-    let mut of = of + diagonal;
-    for pivot in 0..N {
-        let value = of[(pivot, pivot)].max(diagonal[(pivot, pivot)]);
-        if value.is_nan() || value <= 0.0 {
-            return None;
-        }
-        let by_value = 1.0 / value;
-        of[(pivot, pivot)] = 1.0;
-        for column in 0..N {
-            of[(pivot, column)] *= by_value;
-        }
-        for row in 0..N {
-            if row != pivot {
-                let factor = of[(row, pivot)];
-                of[(row, pivot)] = 0.0;
-                for column in 0..N {
-                    of[(row, column)] -= factor * of[(pivot, column)];
-                }
-            }
-        }
-    }
-    Some(of)
 }

@@ -261,6 +261,7 @@ fn the_sweep_solves_what_a_dense_factorisation_solves() {
             let centre = Centre {
                 complementarity: 0.1 * sums.complementarity / problem.degree(),
                 second_order: 1.0,
+                kept: 0.0,
             };
             interior.correct(&problem, goal, unit, 1e-3, centre);
             interior.go(&problem);

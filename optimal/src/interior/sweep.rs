@@ -281,8 +281,9 @@ impl<const N: usize> Interior<N> {
             problem.visit_ahead(node, &mut self.rows[node], &mut correct);
             if problem.stretching() && problem.starts_segment(node) {
                 let [upper, lower] = &mut self.stretch_rows[segment];
-                whole.stretch +=
-                    unit * problem.share(segment) + lower.correct(centre) - upper.correct(centre);
+                whole.stretch += (1.0 - centre.kept) * unit * problem.share(segment)
+                    + lower.correct(centre)
+                    - upper.correct(centre);
                 self.stretch_gains[segment].back(&mut whole);
             }
             if node == 0 {
@@ -297,8 +298,9 @@ impl<const N: usize> Interior<N> {
             let slope = self.correct_jerk(problem, node, smoothing, centre);
             whole.back(&problem.interval(node), &slope, &mut self.gains[node]);
         }
-        self.excess_gain[1] =
-            whole.excess + self.excess_row.correct(centre) + weight_of_excess(goal) * unit;
+        self.excess_gain[1] = whole.excess
+            + self.excess_row.correct(centre)
+            + (1.0 - centre.kept) * weight_of_excess(goal) * unit;
     }
 
     fn correct_jerk(

@@ -6,7 +6,7 @@
 #[cfg(test)]
 use super::Kept;
 use super::Rows;
-use crate::cone::{Centre, Cone, ConeWeight, Pair, Reach, Side, Sums};
+use crate::cone::{Centre, Cone, ConeWeight, LEAST_SLACK, Pair, Reach, Side, Sums};
 use crate::front::{Local, Slope};
 use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 
@@ -162,11 +162,19 @@ impl<const N: usize> Rows<N> for InTube<N> {
     }
 
     fn reset(&mut self, bound: &Tube<N>, point: &Vector<N>, excess: f64) -> f64 {
-        self.progress = bound.along(&(point - bound.start)).clamp(0.0, 1.0);
+        // The excess is of no use to the progress of a capsule, which starts a tolerance from either end.
+        let least = if bound.capsule {
+            LEAST_SLACK.min(1.0 / bound.scaled_length())
+        } else {
+            LEAST_SLACK
+        };
+        self.progress = bound
+            .along(&(point - bound.start))
+            .clamp(least, 1.0 - least);
         let (low, high) = self.ends(bound, point, excess);
-        let beyond = self.low.reset(low).max(self.high.reset(high));
+        let low = self.low.reset_inside(low, least);
+        let beyond = low.max(self.high.reset_inside(high, least));
         let outside = self.cone.reset(&bound.value(point, excess, self.progress));
-        // The excess is of no use to the progress of a capsule.
         outside.max(if bound.capsule { 0.0 } else { beyond })
     }
 
