@@ -25,9 +25,14 @@ pub enum CliError {
     /// The machine is refused.
     #[error(transparent)]
     Machine(#[from] MachineError),
-    /// The filters are refused, whoever asked for them.
-    #[error("filters, of --fir or of fir_s or [[mode]] of the machine file: {0}")]
-    Filters(FirError),
+    /// The filters are refused.
+    #[error("{asked}: {reason}")]
+    Filters {
+        /// Who asked for them: an option, or a field of a machine file.
+        asked: String,
+        /// What is wrong.
+        reason: FirError,
+    },
     /// An option has a value that it must not have.
     #[error("{option}: {value} was given, but {bound}")]
     Option {
@@ -125,6 +130,14 @@ pub enum CliError {
 }
 
 impl CliError {
+    /// Filters that are refused, with who asked for them.
+    pub(crate) fn filters(asked: &str) -> impl Fn(FirError) -> Self {
+        move |reason| Self::Filters {
+            asked: asked.to_owned(),
+            reason,
+        }
+    }
+
     /// A file that cannot be written; a reader that has gone is no fault of anybody.
     pub fn write(file: impl Into<PathBuf>, reason: std::io::Error) -> Self {
         if reason.kind() == std::io::ErrorKind::BrokenPipe {

@@ -10,13 +10,14 @@ use toolglide_fir::{FilterChain, Mode};
 
 /// The chain of a run; `None` where the planner chooses.
 pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterChain>, CliError> {
-    let given = args.fir.as_ref().map(|given| given.0.as_slice());
-    let time_constants = given.unwrap_or(&setup.time_constants);
+    let asked = asked(args, setup);
+    let refuse = CliError::filters(&asked);
+    let time_constants = time_constants(args, setup);
     if !time_constants.is_empty() {
         return FilterChain::with_time_constants(time_constants)
             .and_then(|chain| chain.rounded_to(setup.period))
             .map(Some)
-            .map_err(CliError::Filters);
+            .map_err(refuse);
     }
     if setup.modes.is_empty() {
         return Ok(None);
@@ -24,7 +25,7 @@ pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterCha
     // Axes that vibrate alike need one filter.
     let mut modes = Vec::<Mode>::new();
     for mode in &setup.modes {
-        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(CliError::Filters)?;
+        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(&refuse)?;
         if !modes.contains(&mode) {
             modes.push(mode);
         }
@@ -36,7 +37,25 @@ pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterCha
     };
     FilterChain::silencing(&modes, further.as_slice(), setup.period)
         .map(Some)
-        .map_err(CliError::Filters)
+        .map_err(refuse)
+}
+
+fn time_constants<'a>(args: &'a TuningArgs, setup: &'a Setup) -> &'a [f64] {
+    match &args.fir {
+        Some(given) => &given.0,
+        None => &setup.time_constants,
+    }
+}
+
+/// Who asks for filters, as messages about them say it: an option, or a field of the machine file.
+pub(crate) fn asked(args: &TuningArgs, setup: &Setup) -> String {
+    if args.fir.is_some() {
+        "--fir".to_owned()
+    } else if time_constants(args, setup).is_empty() {
+        setup.modes_asked.clone()
+    } else {
+        format!("{}: fir_s", setup.asked)
+    }
 }
 
 /// Jerk is bounded by a second filter; twice the time that it takes to change the acceleration, because

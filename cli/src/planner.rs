@@ -4,7 +4,7 @@
 
 use crate::args::TuningArgs;
 use crate::error::CliError;
-use crate::filters::chain;
+use crate::filters::{asked, chain};
 use crate::setup::Setup;
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
@@ -86,6 +86,8 @@ pub(crate) const EXACT_STOP: &str = "exact-stop";
 pub(crate) struct Tuning {
     /// The filters of the methods fir and fir-p2p; `None` where the planner chooses.
     pub(crate) filters: Option<FilterChain>,
+    /// Who asked for them.
+    pub(crate) filters_asked: String,
     /// How much planning the method optimal may do.
     pub(crate) effort: Effort,
 }
@@ -95,6 +97,7 @@ impl Tuning {
     pub(crate) fn of(args: &TuningArgs, setup: &Setup) -> Result<Self, CliError> {
         Ok(Self {
             filters: chain(args, setup)?,
+            filters_asked: asked(args, setup),
             effort: Effort::new(args.effort).unwrap_or_default(),
         })
     }
@@ -114,7 +117,9 @@ pub(crate) fn planner<const N: usize>(
     if let Some(method) = toolglide_fir::Method::find(method) {
         let mut settings = toolglide_fir::Settings::new(limits).with_method(method);
         if let Some(chain) = &tuning.filters {
-            settings = settings.with_chain(chain).map_err(CliError::Filters)?;
+            settings = settings
+                .with_chain(chain)
+                .map_err(CliError::filters(&tuning.filters_asked))?;
         }
         return Ok(Box::new(FirInterpolation::new(start, &settings)));
     }

@@ -19,6 +19,8 @@ const SHORTEST_PERIOD: f64 = 1e-9;
 /// The machine of a run.
 #[derive(Debug)]
 pub(crate) struct Setup {
+    /// The machine as the command line asks for it: a name or a file.
+    pub(crate) asked: String,
     /// Name of the machine.
     pub(crate) machine: String,
     /// Its axes, with the limits of this run.
@@ -33,6 +35,8 @@ pub(crate) struct Setup {
     pub(crate) time_constants: Vec<f64>,
     /// Modes of vibration.
     pub(crate) modes: Vec<ModeConfig>,
+    /// Who says so, as messages tell it.
+    pub(crate) modes_asked: String,
     /// Tools of the machine.
     pub(crate) tools: ToolTable,
     start: Vec<f64>,
@@ -51,6 +55,7 @@ pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinem
     let config = load(path)?;
     let machine = find(&config.model)
         .and_then(|model| (model.build)(&config))
+        .and_then(|machine| config.modes().map(|_| machine))
         .map_err(|reason| toolglide_machines::MachineError::InFile {
             file: path.to_owned(),
             reason: Box::new(reason),
@@ -106,6 +111,8 @@ impl Setup {
         Ok(Self {
             time_constants: config.fir_s,
             modes,
+            modes_asked: format!("{}: [[mode]]", job.machine),
+            asked: job.machine.clone(),
             machine: config.name,
             axes,
             tolerance,

@@ -40,6 +40,7 @@ pub(crate) fn spectrum(
     let mut setup = Setup::new(&args.job, None)?;
     if !args.modes.is_empty() {
         setup.modes.clone_from(&args.modes);
+        setup.modes_asked = "--mode".to_owned();
     }
     match setup.axes.len() {
         2 => run::<2>(args, &setup, out, err),
@@ -66,7 +67,9 @@ impl Oscillators {
     fn new(modes: &[Excited], axes: &[usize], frequencies: &[f64]) -> Result<Self, CliError> {
         let spectrum = frequencies
             .iter()
-            .map(|&frequency| Resonator::at_frequency(frequency).map_err(CliError::Filters))
+            .map(|&frequency| {
+                Resonator::at_frequency(frequency).map_err(CliError::filters("spectrum"))
+            })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             modes: modes

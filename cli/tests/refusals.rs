@@ -261,6 +261,59 @@ fn machine_files_that_say_something_wrong() {
 }
 
 #[test]
+fn filters_and_modes_of_a_machine_file_are_refused_with_its_name() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", SQUARE);
+    for (line, mode, reason) in [
+        (
+            "",
+            "axis = \"X\"\nfrequency_hz = 0",
+            "small.toml: mode of axis X: frequency_hz is 0",
+        ),
+        (
+            "",
+            "axis = \"Y\"\nfrequency_hz = 7\ndamping = 1.5",
+            "small.toml: mode of axis Y: damping is 1.5",
+        ),
+        (
+            "",
+            "axis = \"C\"\nfrequency_hz = 7",
+            "small.toml: mode: axis is C of a machine with axes XY",
+        ),
+        (
+            "",
+            "axis = \"X\"\nfrequency_hz = 1e-3",
+            "small.toml: [[mode]]: ",
+        ),
+        (
+            "fir_s = [1e9, 1]\n",
+            "axis = \"X\"\nfrequency_hz = 7",
+            "small.toml: fir_s: ",
+        ),
+    ] {
+        let text = format!("[[mode]]\n{mode}\n[[axis]]\nname = \"X\"");
+        let file = machine(&folder, "[[axis]]\nname = \"X\"", &text);
+        let text = std::fs::read_to_string(&file).unwrap();
+        let file = folder.write("small.toml", format!("{line}{text}"));
+        let with = ["--machine", file.as_str(), "--method", "fir"];
+        refused(&folder, &program, &with, reason);
+        if reason.contains(" is ") {
+            let shown = toolglide(&["machines", &file]);
+            assert_eq!(shown.code, 2, "{}", shown.out);
+            assert!(shown.err.contains(reason), "{}", shown.err);
+        }
+    }
+    let file = machine(&folder, "small", "small");
+    let with = ["--machine", &file, "--method", "fir", "--fir", "1e9,1"];
+    refused(
+        &folder,
+        &program,
+        &with,
+        "--fir: time constant is 1000000000 s",
+    );
+}
+
+#[test]
 fn what_lies_outside_the_travel_is_told_with_its_line() {
     let folder = Folder::new();
     let file = machine(&folder, "small", "small");

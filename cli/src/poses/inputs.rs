@@ -109,7 +109,7 @@ impl Inputs {
             .fold(0.0, f64::max);
         FilterChain::with_time_constants(&[FIRST_TO_SECOND * second, second])
             .and_then(|chain| chain.rounded_to(self.setup.period))
-            .map_err(CliError::Filters)
+            .map_err(CliError::filters(&self.setup.asked))
     }
 
     /// Opens the program; its first pose is where the motion starts, unless that is known.

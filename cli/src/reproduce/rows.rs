@@ -70,7 +70,8 @@ fn value(quantity: &Quantity, runs: &mut Runs) -> Result<f64, CliError> {
         Quantity::Crossover(tolerance) => crossover(tolerance, runs)?,
         Quantity::CircleFeed(course, radius, tolerance) => {
             let chain = course.chain()?.ok_or_else(|| none(course.name))?;
-            largest_circle_feed(&chain, radius, tolerance).map_err(CliError::Filters)?
+            largest_circle_feed(&chain, radius, tolerance)
+                .map_err(CliError::filters(course.name))?
         }
         Quantity::Gain(course, frequency) => {
             let chain = course.chain()?.ok_or_else(|| none(course.name))?;

@@ -36,7 +36,7 @@ impl Course {
         }
         FilterChain::with_time_constants(self.filters)
             .map(Some)
-            .map_err(CliError::Filters)
+            .map_err(CliError::filters(self.name))
     }
 }
 
@@ -63,6 +63,7 @@ impl Runs {
         }
         let limits = (course.acceleration, course.jerk);
         let tuning = Tuning {
+            filters_asked: course.name.to_owned(),
             filters: course.chain()?,
             ..Tuning::default()
         };

@@ -1,5 +1,6 @@
 //! Small motions for tests: rest to rest along lines, and two axes whose moves overlap in time.
 
+use crate::verify::{Report, verify_set_points};
 use crate::{
     Feedrate, Limits, Move, Path, Piece, Plan, Sample, Serves, Tolerance, Toolpath, Trajectory,
     Vector,
@@ -202,4 +203,9 @@ pub(super) fn set_points<const N: usize>(plan: &Plan<N>, period: f64) -> Vec<(f6
         .collect();
     points.push((plan.duration(), plan.end()));
     points
+}
+
+/// What the judge says of the set-points of a plan.
+pub(super) fn judged<const N: usize>(plan: &Plan<N>, path: &Toolpath<N>, period: f64) -> Report<N> {
+    verify_set_points(set_points(plan, period), path, &limits(), 0.0).unwrap()
 }

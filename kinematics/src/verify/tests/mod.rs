@@ -2,7 +2,9 @@
 
 mod awkward;
 mod build;
+mod course;
 mod defects;
+mod limits;
 mod order;
 mod points;
 mod search;
