@@ -91,83 +91,17 @@ pub(crate) fn cut<const N: usize>(
     fineness: Fineness,
     mut take: impl FnMut(Part<N>),
 ) {
-    let mut along = limits.along(&run.direction);
-    along.velocity = along.velocity.min(run.feedrate);
-    let (acceleration, jerk) = weakest(limits);
-    let weak = Tangential {
-        velocity: along.velocity,
-        acceleration,
-        jerk,
-    };
-    let build_up = (acceleration / jerk).min((along.velocity / jerk).sqrt());
-    let stop_time = weak.time_to_change(along.velocity);
-    // Where speed takes long to change, the intervals grow with the geometric mean of both times.
-    let interval = fineness.0 * (build_up * (0.5 * stop_time).max(build_up)).sqrt();
-    let whole = Span {
-        start: run.start,
-        end: run.end,
-        direction: run.direction,
-        length: run.length,
-        tube: run.tube,
-        balls: run.balls,
-        goes_on: false,
-        feedrate: run.feedrate,
+    let line = whole(run, limits, fineness);
+    let Span {
         limits: along,
-        serves: run.serves,
         interval,
         stop_time,
-        steps: 0,
-    };
-    let place = |along: f64| {
-        if along <= 0.0 {
-            run.start
-        } else if along >= run.length {
-            run.end
-        } else {
-            run.start + run.direction * along
-        }
-    };
-    let span = |from: f64, to: f64| {
-        let last = to >= run.length;
-        Part::Span(Span {
-            start: place(from),
-            end: place(to),
-            length: to.min(run.length) - from,
-            // Where a line is only cut, the ball costs nothing: when it is passed is free.
-            balls: [
-                if from > 0.0 { run.tube } else { run.balls[0] },
-                if last { run.balls[1] } else { run.tube },
-            ],
-            goes_on: !last,
-            ..whole
-        })
-    };
+        ..
+    } = line;
     let distance_to_stop = 0.5 * along.velocity * stop_time;
     let room = END_ROOM * distance_to_stop;
     let middle = run.length - 2.0 * room;
-    if middle > distance_to_stop.max(along.velocity * interval * CRUISE_STEPS) {
-        let ends = parts(stop_time * END_ROOM, interval);
-        let share = |index| room * steps(index) / steps(ends);
-        for index in 0..ends {
-            take(span(share(index), share(index + 1)));
-        }
-        take(Part::Cruise(Cruise {
-            start: place(room),
-            end: place(run.length - room),
-            direction: run.direction,
-            limits: along,
-            speed: CRUISE_SHARE * along.velocity,
-            serves: run.serves,
-        }));
-        for left in (1..=ends).rev() {
-            let to = if left > 1 {
-                run.length - share(left - 1)
-            } else {
-                f64::INFINITY
-            };
-            take(span(run.length - share(left), to));
-        }
-    } else {
+    if middle <= distance_to_stop.max(along.velocity * interval * CRUISE_STEPS) {
         let reach = along.reachable_within(run.length);
         let time = 2.0 * along.time_to_change(reach) + run.length / along.velocity;
         let least = along.velocity * interval * SPAN_STEPS;
@@ -178,9 +112,72 @@ pub(crate) fn cut<const N: usize>(
         };
         let share = |index| run.length * steps(index) / steps(count);
         for index in 1..count {
-            take(span(share(index - 1), share(index)));
+            take(line.part(run, share(index - 1), share(index)));
         }
-        take(span(share(count - 1), f64::INFINITY));
+        take(line.part(run, share(count - 1), f64::INFINITY));
+        return;
+    }
+    let ends = parts(stop_time * END_ROOM, interval);
+    let share = |index| room * steps(index) / steps(ends);
+    for index in 0..ends {
+        take(line.part(run, share(index), share(index + 1)));
+    }
+    take(Part::Cruise(Cruise {
+        start: place(run, room),
+        end: place(run, run.length - room),
+        direction: run.direction,
+        limits: along,
+        speed: CRUISE_SHARE * along.velocity,
+        serves: run.serves,
+    }));
+    for left in (1..=ends).rev() {
+        let to = if left > 1 {
+            run.length - share(left - 1)
+        } else {
+            f64::INFINITY
+        };
+        take(line.part(run, run.length - share(left), to));
+    }
+}
+
+/// A run as one span.
+fn whole<const N: usize>(run: &Run<N>, limits: &Limits<N>, fineness: Fineness) -> Span<N> {
+    let mut along = limits.along(&run.direction);
+    along.velocity = along.velocity.min(run.feedrate);
+    let (acceleration, jerk) = weakest(limits);
+    let weak = Tangential {
+        velocity: along.velocity,
+        acceleration,
+        jerk,
+    };
+    let build_up = (acceleration / jerk).min((along.velocity / jerk).sqrt());
+    let stop_time = weak.time_to_change(along.velocity);
+    Span {
+        start: run.start,
+        end: run.end,
+        direction: run.direction,
+        length: run.length,
+        tube: run.tube,
+        balls: run.balls,
+        goes_on: false,
+        feedrate: run.feedrate,
+        limits: along,
+        serves: run.serves,
+        // Where speed takes long to change, the intervals grow with the geometric mean of both times.
+        interval: fineness.0 * (build_up * (0.5 * stop_time).max(build_up)).sqrt(),
+        stop_time,
+        steps: 0,
+    }
+}
+
+/// The place so far along a run, mm; its very ends there and beyond.
+fn place<const N: usize>(run: &Run<N>, along: f64) -> Vector<N> {
+    if along <= 0.0 {
+        run.start
+    } else if along >= run.length {
+        run.end
+    } else {
+        run.start + run.direction * along
     }
 }
 
@@ -200,6 +197,23 @@ fn parts(time: f64, interval: f64) -> usize {
 }
 
 impl<const N: usize> Span<N> {
+    /// The part of a run between two distances from its start, mm.
+    fn part(&self, run: &Run<N>, from: f64, to: f64) -> Part<N> {
+        let last = to >= run.length;
+        Part::Span(Self {
+            start: place(run, from),
+            end: place(run, to),
+            length: to.min(run.length) - from,
+            // Where a line is only cut, the ball costs nothing: when it is passed is free.
+            balls: [
+                if from > 0.0 { run.tube } else { run.balls[0] },
+                if last { run.balls[1] } else { run.tube },
+            ],
+            goes_on: !last,
+            ..*self
+        })
+    }
+
     /// Intervals for a duration, over which its speed is `steady` or not.
     #[allow(
         clippy::cast_possible_truncation,

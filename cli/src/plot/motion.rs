@@ -206,11 +206,48 @@ fn axes<const N: usize>(
             color,
         );
     }
+    let alike = draw_limits(panel, &drawn, scale, &chart, canvas);
+    canvas.unclip();
+    chart.draw_frame(canvas, &format!("{}, {unit}", panel.title));
+    if lowest {
+        chart.draw_name_across(canvas, &format!("time, {}", time_unit(plot.time).1));
+    }
+    let names: Vec<String> = plot.letters.iter().map(char::to_string).collect();
+    let told = told_limits(panel, &names, &drawn, alike, (scale, unit));
+    let mut entries: Vec<(&str, &str, bool)> = names
+        .iter()
+        .zip(color::AXES)
+        .enumerate()
+        .filter(|&(axis, _)| plot.moves(axis))
+        .map(|(_, (name, color))| (name.as_str(), color, false))
+        .collect();
+    if drawn.contains(&true) {
+        let color = if alike {
+            color::BOUND
+        } else {
+            color::PROGRAMMED
+        };
+        entries.push(("limit", color, true));
+    }
+    if !told.is_empty() {
+        entries.push((&told, "", false));
+    }
+    chart.draw_legend(canvas, &entries);
+}
+
+/// The limits that are near enough, as dashed lines; one for all axes where they are alike, which it gives.
+fn draw_limits(
+    panel: &Panel<'_>,
+    drawn: &[bool],
+    scale: f64,
+    chart: &Chart,
+    canvas: &mut Canvas,
+) -> bool {
     let alike = panel
         .limits
         .windows(2)
         .all(|pair| pair[0].to_bits() == pair[1].to_bits());
-    let bounds = panel.limits.iter().zip(&drawn).enumerate();
+    let bounds = panel.limits.iter().zip(drawn).enumerate();
     for (axis, (&limit, _)) in bounds.filter(|(_, (_, drawn))| **drawn) {
         let color = if alike {
             color::BOUND
@@ -226,32 +263,7 @@ fn axes<const N: usize>(
             break;
         }
     }
-    canvas.unclip();
-    chart.draw_frame(canvas, &format!("{}, {unit}", panel.title));
-    if lowest {
-        chart.draw_name_across(canvas, &format!("time, {}", time_unit(plot.time).1));
-    }
-    let names: Vec<String> = plot.letters.iter().map(char::to_string).collect();
-    let mut entries: Vec<(&str, &str, bool)> = names
-        .iter()
-        .zip(color::AXES)
-        .enumerate()
-        .filter(|&(axis, _)| plot.moves(axis))
-        .map(|(_, (name, color))| (name.as_str(), color, false))
-        .collect();
-    let told = told_limits(panel, &names, &drawn, alike, (scale, unit));
-    if drawn.iter().any(|&drawn| drawn) {
-        let color = if alike {
-            color::BOUND
-        } else {
-            color::PROGRAMMED
-        };
-        entries.push(("limit", color, true));
-    }
-    if !told.is_empty() {
-        entries.push((&told, "", false));
-    }
-    chart.draw_legend(canvas, &entries);
+    alike
 }
 
 /// Limits that are too far away to be drawn, in words, in the unit of the chart.
