@@ -19,7 +19,7 @@ use toolglide_program::Program;
 const MOVES: usize = 512;
 
 /// Pieces that are planned before any of them is judged.
-const PIECES: usize = 4096;
+const PIECES: usize = 512;
 
 /// The moves of a program on the axes of a machine, checked.
 pub(crate) struct Moves<R, const N: usize> {

@@ -69,8 +69,16 @@ impl<const N: usize> Arcs<N> {
     }
 
     /// How fast an arc may be followed.
-    pub(crate) fn of(&self, number: u32) -> f64 {
-        let index = usize::try_from(number - self.first).unwrap_or(0);
-        self.entries[index].pace
+    pub(crate) fn pace_of(&self, number: u32) -> f64 {
+        self.entry(number).pace
+    }
+
+    /// Largest turn between chords of an arc but the first and the last.
+    pub(crate) fn turn_of(&self, number: u32) -> f64 {
+        self.entry(number).bend.turn()
+    }
+
+    fn entry(&self, number: u32) -> &Entry<N> {
+        &self.entries[usize::try_from(number - self.first).unwrap_or(0)]
     }
 }

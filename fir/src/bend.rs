@@ -46,12 +46,17 @@ impl<const N: usize> Bend<N> {
         }
     }
 
+    /// Largest turn `|t2 - t1|` between two chords but the first and the last.
+    pub(crate) fn turn(&self) -> f64 {
+        self.turn
+    }
+
     /// How fast the arc may be followed, `change` being the largest change of velocity of each axis in
     /// the window of the chain.
     pub(crate) fn pace(&self, feedrate: f64, chain: &CubicChain, change: &Vector<N>) -> f64 {
         let (radius, tolerance) = (self.radius, self.tolerance);
         // The change of velocity within the longest filter is at most what an axis may have.
-        let step = largest_multiple(&(self.turning * (self.turn * self.share)), change);
+        let step = largest_multiple(&(self.turning * self.turn), change);
         let feed = feedrate.min(chord_feed(step, self.shortest, chain.long()));
         let around = radius / self.share;
         let slow = (2.0 * tolerance / (radius * chain.variance())).sqrt();

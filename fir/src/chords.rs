@@ -49,13 +49,17 @@ impl<const N: usize> Chords<N> {
         }
     }
 
-    /// Largest turn `|t2 - t1|` between two of them: on a spiral the direction turns by more than the arc
-    /// does.
+    /// Largest turn `|t2 - t1|` between two of them but the first and the last.
+    ///
+    /// On a spiral their directions turn by more than the arc does, on a helix by as much less as they
+    /// rise.
     pub(crate) fn turn(&self) -> f64 {
         let (start, end) = self.arc.radii();
         let pitch = (end - start) / (self.arc.sweep() * start.min(end));
         let angle = self.angle * (1.0 + pitch * pitch).min(2.0);
-        2.0 * (0.5 * angle).sin() * (1.0 + pitch * pitch).sqrt()
+        let turn = 2.0 * (0.5 * angle).sin() * (1.0 + pitch * pitch).sqrt();
+        let flat = turn * (start.max(end) + self.outward);
+        turn * flat / flat.hypot(self.arc.lift().norm() / self.count)
     }
 
     /// Turn of the arc per length, 1/mm.
@@ -178,6 +182,7 @@ mod tests {
                 let Some(inner) = spans.get(1..spans.len() - 1) else {
                     continue;
                 };
+                let mut largest = 0.0_f64;
                 for pair in inner.windows(2) {
                     let turn = (pair[1].normalize() - pair[0].normalize()).norm();
                     let most = chords.turn();

@@ -38,6 +38,10 @@ const CUT: usize = 2048;
 /// Pulses that may still be in the window of the filters; when there are more, the motion rests.
 const CONTEXT: usize = 384;
 
+/// What turns may differ by, relative: above the rounding of vertices, below what changes of velocity may
+/// exceed their bound by.
+const EVEN: f64 = 1e-11;
+
 /// What is aimed at, as a share of the tolerance, when a bound is broken.
 const AIM: f64 = 0.9995;
 
@@ -138,6 +142,10 @@ impl<const N: usize> LookAhead<N> {
     pub(crate) fn push(&mut self, pulse: Pulse<N>, out: &mut impl FnMut(Command<N>)) {
         if let Some(before) = self.pulses.last_mut() {
             before.turn = (pulse.direction - before.direction).norm();
+            before.even = match before.arc {
+                Some(arc) => before.turn <= self.arcs.turn_of(arc) * (1.0 + EVEN),
+                None => false,
+            };
         }
         self.pulses.push(pulse);
         self.legs += 1;

@@ -27,6 +27,8 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) tolerance: f64,
     /// Whether the next pulse goes on along the same arc, so that there is no corner in between.
     pub(crate) smooth: bool,
+    /// Whether the path turns at its end by no more than the arc does between its chords.
+    pub(crate) even: bool,
     /// How far the arc that it is a chord of bends away from it.
     pub(crate) sagitta: f64,
     /// Turn `|t2 - t1|` of that arc per length, 1/mm.
@@ -72,6 +74,7 @@ impl<const N: usize> Pulse<N> {
             part: false,
             tolerance,
             smooth: false,
+            even: false,
             sagitta: 0.0,
             curvature: 0.0,
             outward: 0.0,
@@ -94,10 +97,7 @@ impl<const N: usize> Pulse<N> {
     /// Whether the next pulse goes on along the same arc at the same feedrate, and the path turns no more
     /// between them than the arc does; it does where the arc begins and ends.
     pub(crate) fn turns_on(&self, next: &Self) -> bool {
-        self.smooth
-            && same(self.feed, next.feed)
-            && next.feed <= next.limit
-            && self.turn <= self.curvature * self.length
+        self.smooth && same(self.feed, next.feed) && next.feed <= next.limit && self.even
     }
 
     /// The parts before and after a distance.

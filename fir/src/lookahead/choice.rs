@@ -136,7 +136,7 @@ impl<const N: usize> LookAhead<N> {
         let most = feedrate.min(STEPS * pulse.step);
         pulse.limit = most;
         if let Some(arc) = pulse.arc {
-            pulse.limit = most.min(self.arcs.of(arc));
+            pulse.limit = most.min(self.arcs.pace_of(arc));
         }
     }
 }
