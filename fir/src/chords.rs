@@ -190,7 +190,12 @@ mod tests {
                         turn <= most * (1.0 + 1e-9),
                         "{what} at {tolerance}: {turn} > {most}"
                     );
+                    largest = largest.max(turn / most);
                 }
+                assert!(
+                    inner.len() < 2 || largest > 0.99,
+                    "{what} at {tolerance}: {largest} of what is said"
+                );
             }
         }
     }

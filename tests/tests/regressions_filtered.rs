@@ -197,3 +197,15 @@ fn moves_of_days_are_followed_as_exactly_as_others() {
 ] };
     holds(&course, &[[629.458, 2500.0, 26690.4], [231.644, 2500.0, 348203.0], [102.297, 2500.0, 31765.6]]);
 }
+
+/// Vertices of chords lie outside their arc, so the chords of a helix turn by more than the helix does.
+#[test]
+#[rustfmt::skip]
+fn a_steep_helix_is_no_slower_without_stops_than_with_them() {
+    let course = Course { start: [0.0, 0.0, 0.0], legs: vec![
+    go(Lead::Line([1.0, 0.0, 0.0]), INF, 0.5),
+    go(arc([1.0, 0.0, -0.07204821509807846], [-7.9248451541058635, 0.0, 0.0], [2, 1], false, 0), INF, 0.5),
+    go(Lead::Line([-7.083374169297967, -0.5403022383303528, 0.0002701511416745817]), INF, 0.5),
+] };
+    holds(&course, &[[310.44091560813786, 3831.7180220690566, 11495.154066207171], [10.000000000000002, 100.00000000000004, 300.00000000000017], [10.000000000000002, 100.00000000000004, 300.00000000000017]]);
+}
