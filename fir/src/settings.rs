@@ -39,6 +39,10 @@ impl Method {
     }
 }
 
+/// Time constants that are chosen are no shorter than this, s: below any servo period, and long enough
+/// that acceleration, which grows within one of them, keeps its digits beside those of time.
+const SHORTEST: f64 = 1e-4;
+
 /// What a plan must keep, and which filters it may use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings<const N: usize> {
@@ -100,6 +104,7 @@ pub(crate) fn designed_for<const N: usize>(limits: &Limits<N>, feed: f64) -> Cub
         longest = longest.max(velocity / limits.acceleration()[axis]);
         product = product.max(2.0 * velocity / limits.jerk()[axis]);
     }
-    let longest = longest.max(product.sqrt());
-    CubicChain::of_two(longest / ROUNDING, product / longest / ROUNDING)
+    let longest = longest.max(product.sqrt()).max(SHORTEST);
+    let shortest = (product / longest).max(SHORTEST);
+    CubicChain::of_two(longest / ROUNDING, shortest / ROUNDING)
 }
