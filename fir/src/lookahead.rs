@@ -11,6 +11,7 @@
 mod choice;
 mod corners;
 mod correction;
+mod feedrates;
 mod in_step;
 mod ramp;
 mod room;
@@ -76,6 +77,8 @@ pub(crate) struct LookAhead<const N: usize> {
     planned: usize,
     /// How many were not handed out, whatever they are cut into.
     legs: usize,
+    /// How many came since the feedrate of the program changed.
+    unchanged: usize,
     /// Whether pulses went before the first one that is kept.
     underway: bool,
     /// Whether every pulse may follow rest.
@@ -116,6 +119,7 @@ impl<const N: usize> LookAhead<N> {
             fixed: 0,
             planned: 0,
             legs: 0,
+            unchanged: 0,
             underway: false,
             capped: false,
             planned_capped: false,
@@ -140,7 +144,11 @@ impl<const N: usize> LookAhead<N> {
 
     /// Takes the next pulse; what is decided goes to `out`.
     pub(crate) fn push(&mut self, pulse: Pulse<N>, out: &mut impl FnMut(Command<N>)) {
+        self.unchanged += 1;
         if let Some(before) = self.pulses.last_mut() {
+            if (before.programmed - pulse.programmed).abs() > 0.0 {
+                self.unchanged = 0;
+            }
             before.turn = (pulse.direction - before.direction).norm();
             before.even = match before.arc {
                 Some(arc) => before.turn <= self.arcs.turn_of(arc) * (1.0 + EVEN),
@@ -267,6 +275,11 @@ impl<const N: usize> LookAhead<N> {
         self.slow_down();
         if !capped {
             self.ramp();
+        }
+        match self.keep_feedrates() {
+            None => return false,
+            Some(true) if !capped => self.ramp(),
+            Some(_) => {}
         }
         self.overlap_dwells();
         let mut in_step = false;

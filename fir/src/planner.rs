@@ -60,6 +60,7 @@ struct ArcUnderWay<const N: usize> {
     chords: Chords<N>,
     /// By which the look-ahead knows it.
     number: u32,
+    programmed: f64,
     feedrate: f64,
     tolerance: f64,
     serves: Serves,
@@ -149,7 +150,8 @@ impl<const N: usize> FirInterpolation<N> {
 
     fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, serves: Serves) {
         self.flush();
-        let mut feedrate = step.feedrate().speed();
+        let programmed = step.feedrate().speed();
+        let mut feedrate = programmed;
         self.choose(feedrate);
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
@@ -160,6 +162,7 @@ impl<const N: usize> FirInterpolation<N> {
         self.arc = Some(ArcUnderWay {
             chords,
             number: self.look.begin_arc(bend, feedrate),
+            programmed,
             feedrate,
             tolerance,
             serves,
@@ -177,6 +180,7 @@ impl<const N: usize> FirInterpolation<N> {
                 let ArcUnderWay {
                     chords,
                     number,
+                    programmed,
                     feedrate,
                     tolerance,
                     serves,
@@ -191,6 +195,7 @@ impl<const N: usize> FirInterpolation<N> {
                 let tolerance = tolerance.min(ARC_SHARE * room);
                 self.merger.go_to(vertex);
                 let mut pulse = Pulse::between((from, vertex), feedrate, tolerance, serves);
+                pulse.programmed = programmed;
                 pulse.smooth = more;
                 pulse.arc = Some(number);
                 pulse.sagitta = chords.sagitta();

@@ -15,6 +15,8 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) to: Vector<N>,
     pub(crate) direction: Vector<N>,
     pub(crate) length: f64,
+    /// Feedrate of the program.
+    pub(crate) programmed: f64,
     /// Largest feedrate that the program and the axes leave.
     pub(crate) feedrate: f64,
     /// Number of the arc that it is part of.
@@ -67,6 +69,7 @@ impl<const N: usize> Pulse<N> {
             to,
             direction: span / length,
             length,
+            programmed: feedrate,
             feedrate,
             arc: None,
             limit: feedrate,

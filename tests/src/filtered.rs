@@ -5,10 +5,13 @@
 use crate::course::{Course, Numbers, limits};
 use proptest::prelude::*;
 use toolglide_fir::{FilterChain, Method, Settings, plan};
-use toolglide_kinematics::{Trajectory, verify};
+use toolglide_kinematics::{Plan, Trajectory, Vector, verify, verify_set_points};
 
 /// Time constants that are tried; none where the planner chooses.
 const CHAINS: [&[f64]; 4] = [&[], &[0.05, 0.03], &[0.02, 0.02], &[0.06, 0.04, 0.015]];
+
+/// Set-points that are judged of one motion.
+const MOST_SET_POINTS: f64 = 4000.0;
 
 /// Plans a course behind one of the chains, with stops and without, and has it judged.
 ///
@@ -76,6 +79,14 @@ fn keeps_behind<const N: usize>(
             "it ends {} mm from the end",
             (motion.end() - path.end()).norm()
         );
+        let told = verify_set_points(set_points(&motion), &path, &limits, 0.0);
+        let told = told.map_err(|reason| TestCaseError::fail(reason.to_string()))?;
+        prop_assert!(
+            told.passes(),
+            "set-points of {} behind {lengths:?}: {:#?}",
+            method.name(),
+            told.examples
+        );
         durations.push(motion.duration());
     }
     prop_assert!(
@@ -85,4 +96,16 @@ fn keeps_behind<const N: usize>(
         durations[1]
     );
     Ok(())
+}
+
+/// Set-points of a motion every millisecond, or fewer of a long one.
+fn set_points<const N: usize>(motion: &Plan<N>) -> Vec<(f64, Vector<N>)> {
+    let period = (motion.duration() / MOST_SET_POINTS).max(0.001);
+    let mut points: Vec<_> = (0..)
+        .map(|tick| f64::from(tick) * period)
+        .take_while(|&time| time < motion.duration() - 0.5 * period)
+        .map(|time| (time, motion.sample(time).position))
+        .collect();
+    points.push((motion.duration(), motion.end()));
+    points
 }

@@ -209,3 +209,17 @@ fn a_steep_helix_is_no_slower_without_stops_than_with_them() {
 ] };
     holds(&course, &[[310.44091560813786, 3831.7180220690566, 11495.154066207171], [10.000000000000002, 100.00000000000004, 300.00000000000017], [10.000000000000002, 100.00000000000004, 300.00000000000017]]);
 }
+
+/// Half of a change of the feedrate lay behind the corner where it changes.
+#[test]
+#[rustfmt::skip]
+fn a_move_is_followed_no_faster_than_its_own_feedrate_where_the_one_before_is_faster() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(Lead::Line([50.0, 0.0]), 100.0, 0.01),
+    go(Lead::Line([100.0, 0.0]), 66.66666666666667, 0.01),
+    go(Lead::Line([150.0, 0.0]), 91.66666666666667, 0.01),
+    go(arc([150.0, 20.0], [170.0, 20.0], [0, 1], true, 0), 60.0, 0.01),
+    go(Lead::Line([170.0, 50.0]), 80.0, 0.01),
+] };
+    holds(&course, &[[500.0, 2500.0, 200000.0]; 2]);
+}

@@ -21,15 +21,20 @@ impl<const N: usize> LookAhead<N> {
     /// Overlap of a corner by itself: as much is missing before it as is gained behind it, and the
     /// tolerance bounds both.
     fn own_overlap(&self, corner: usize) -> f64 {
+        self.overlap_within(corner, f64::INFINITY)
+    }
+
+    /// The same with no pulse faster than a feedrate.
+    pub(super) fn overlap_within(&self, corner: usize, most: f64) -> f64 {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        let feeds = [before.feed.min(most), after.feed.min(most)];
         let total = self.chain.total();
         let reach = self.allowed(corner) / before.turn;
-        let slowest = before.feed.min(after.feed);
-        if reach >= 0.5 * total * slowest {
+        if reach >= 0.5 * total * feeds[0].min(feeds[1]) {
             return total;
         }
         let side = |feed: f64| self.chain.time_to(reach / feed);
-        (side(before.feed) + side(after.feed)).min(total)
+        (side(feeds[0]) + side(feeds[1])).min(total)
     }
 
     /// Time lost by one end of a pulse that has to be slow there.

@@ -72,6 +72,10 @@ impl<const N: usize> LookAhead<N> {
             pulse.overlap = if stops { 0.0 } else { self.chain.total() };
         }
         self.ramp();
+        // What was handed out is slow enough, or a stop away.
+        if self.keep_feedrates() == Some(true) {
+            self.ramp();
+        }
         self.time();
     }
 
