@@ -3,6 +3,7 @@
 //! Source: none; many pulses share one arc. Not here: how that is found, see the bend.
 
 use crate::bend::Bend;
+use crate::chords::Shape;
 use crate::cubic::CubicChain;
 use std::collections::VecDeque;
 use toolglide_kinematics::Vector;
@@ -10,6 +11,7 @@ use toolglide_kinematics::Vector;
 #[derive(Clone, Copy, Debug)]
 struct Entry<const N: usize> {
     bend: Bend<N>,
+    shape: Shape,
     feedrate: f64,
     /// Largest feedrate behind the chain in use.
     pace: f64,
@@ -34,7 +36,7 @@ impl<const N: usize> Arcs<N> {
     /// Keeps an arc and gives its number.
     pub(crate) fn push(
         &mut self,
-        bend: Bend<N>,
+        (bend, shape): (Bend<N>, Shape),
         feedrate: f64,
         chain: &CubicChain,
         change: &Vector<N>,
@@ -47,6 +49,7 @@ impl<const N: usize> Arcs<N> {
         let pace = bend.pace(feedrate, chain, change);
         self.entries.push_back(Entry {
             bend,
+            shape,
             feedrate,
             pace,
         });
@@ -76,6 +79,11 @@ impl<const N: usize> Arcs<N> {
     /// Largest turn between chords of an arc but the first and the last.
     pub(crate) fn turn_of(&self, number: u32) -> f64 {
         self.entry(number).bend.turn()
+    }
+
+    /// How the chords of an arc lie beside it.
+    pub(crate) fn shape_of(&self, number: u32) -> Shape {
+        self.entry(number).shape
     }
 
     fn entry(&self, number: u32) -> &Entry<N> {

@@ -18,9 +18,18 @@ pub(crate) struct Chords<const N: usize> {
     count: f64,
     next: f64,
     angle: f64,
-    curvature: f64,
-    sagitta: f64,
-    outward: f64,
+    shape: Shape,
+}
+
+/// How chords lie beside their arc; all zero where there is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Shape {
+    /// How far the arc bends away from a chord.
+    pub(crate) sagitta: f64,
+    /// Turn `|t2 - t1|` of the arc per length, 1/mm.
+    pub(crate) curvature: f64,
+    /// How far the vertices lie outside the arc.
+    pub(crate) outward: f64,
 }
 
 /// How far an arc is from its own chord at most: second derivative times square over eight.
@@ -43,9 +52,11 @@ impl<const N: usize> Chords<N> {
             count,
             next: 1.0,
             angle,
-            curvature: radius * (sweep / arc.length()).powi(2),
-            sagitta: 0.125 * angle * angle * bending,
-            outward: angle * angle * radius / 12.0,
+            shape: Shape {
+                sagitta: 0.125 * angle * angle * bending,
+                curvature: radius * (sweep / arc.length()).powi(2),
+                outward: angle * angle * radius / 12.0,
+            },
         }
     }
 
@@ -58,23 +69,13 @@ impl<const N: usize> Chords<N> {
         let pitch = (end - start) / (self.arc.sweep() * start.min(end));
         let angle = self.angle * (1.0 + pitch * pitch).min(2.0);
         let turn = 2.0 * (0.5 * angle).sin() * (1.0 + pitch * pitch).sqrt();
-        let flat = turn * (start.max(end) + self.outward);
+        let flat = turn * (start.max(end) + self.shape.outward);
         turn * flat / flat.hypot(self.arc.lift().norm() / self.count)
     }
 
-    /// Turn of the arc per length, 1/mm.
-    pub(crate) fn curvature(&self) -> f64 {
-        self.curvature
-    }
-
-    /// How far the arc bends away from a chord.
-    pub(crate) fn sagitta(&self) -> f64 {
-        self.sagitta
-    }
-
-    /// How far the vertices lie outside the arc.
-    pub(crate) fn outward(&self) -> f64 {
-        self.outward
+    /// How they lie beside the arc.
+    pub(crate) fn shape(&self) -> Shape {
+        self.shape
     }
 
     /// Length of the shortest chord, of the first two and the last two.
@@ -103,7 +104,7 @@ impl<const N: usize> Chords<N> {
         }
         let ((radial, lateral), (start, end)) = (arc.frame(), arc.radii());
         let (sine, cosine) = (share * arc.sweep()).sin_cos();
-        let radius = start + share * (end - start) + self.outward;
+        let radius = start + share * (end - start) + self.shape.outward;
         arc.center() + (radial * cosine + lateral * sine) * radius + arc.lift() * share
     }
 

@@ -20,6 +20,7 @@ mod stops;
 use crate::arcs::Arcs;
 use crate::bend::Bend;
 use crate::bound::Schedule;
+use crate::chords::Shape;
 use crate::command::{Command, TimedPulse};
 use crate::cubic::CubicChain;
 use crate::pulse::Pulse;
@@ -138,8 +139,9 @@ impl<const N: usize> LookAhead<N> {
     }
 
     /// Takes the arc that the next pulses are part of.
-    pub(crate) fn begin_arc(&mut self, bend: Bend<N>, feedrate: f64) -> u32 {
-        self.arcs.push(bend, feedrate, &self.chain, &self.change)
+    pub(crate) fn begin_arc(&mut self, bend: Bend<N>, shape: Shape, feedrate: f64) -> u32 {
+        self.arcs
+            .push((bend, shape), feedrate, &self.chain, &self.change)
     }
 
     /// Takes the next pulse; what is decided goes to `out`.

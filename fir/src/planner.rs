@@ -161,7 +161,7 @@ impl<const N: usize> FirInterpolation<N> {
         }
         self.arc = Some(ArcUnderWay {
             chords,
-            number: self.look.begin_arc(bend, feedrate),
+            number: self.look.begin_arc(bend, chords.shape(), feedrate),
             programmed,
             feedrate,
             tolerance,
@@ -178,7 +178,6 @@ impl<const N: usize> FirInterpolation<N> {
         match under_way.chords.next() {
             Some((vertex, more)) => {
                 let ArcUnderWay {
-                    chords,
                     number,
                     programmed,
                     feedrate,
@@ -198,9 +197,6 @@ impl<const N: usize> FirInterpolation<N> {
                 pulse.programmed = programmed;
                 pulse.smooth = more;
                 pulse.arc = Some(number);
-                pulse.sagitta = chords.sagitta();
-                pulse.curvature = chords.curvature();
-                pulse.outward = if more { chords.outward() } else { 0.0 };
                 self.add(pulse);
             }
             None => {

@@ -31,12 +31,6 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) smooth: bool,
     /// Whether the path turns at its end by no more than the arc does between its chords.
     pub(crate) even: bool,
-    /// How far the arc that it is a chord of bends away from it.
-    pub(crate) sagitta: f64,
-    /// Turn `|t2 - t1|` of that arc per length, 1/mm.
-    pub(crate) curvature: f64,
-    /// How far its end lies outside that arc.
-    pub(crate) outward: f64,
     pub(crate) serves: Serves,
     /// Feedrate that is commanded.
     pub(crate) feed: f64,
@@ -78,9 +72,6 @@ impl<const N: usize> Pulse<N> {
             tolerance,
             smooth: false,
             even: false,
-            sagitta: 0.0,
-            curvature: 0.0,
-            outward: 0.0,
             serves,
             feed: feedrate,
             gap: 0.0,

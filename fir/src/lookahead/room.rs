@@ -8,6 +8,8 @@
 
 use super::LookAhead;
 use crate::bend::STEADY_EXCESS;
+use crate::chords::Shape;
+use crate::pulse::Pulse;
 
 /// Share of the sagitta of chords that a corner beside them leaves unused before anything is known of its
 /// window: where half of it is on the arc, a sixth is wanted, and more with a dwell.
@@ -23,14 +25,20 @@ impl<const N: usize> LookAhead<N> {
         before.tolerance.min(after.tolerance)
     }
 
+    fn shape(&self, pulse: &Pulse<N>) -> Shape {
+        let arc = pulse.arc;
+        arc.map_or_else(Shape::default, |arc| self.arcs.shape_of(arc))
+    }
+
     /// What may be expected to be allowed at a corner.
     pub(super) fn allowed(&self, corner: usize) -> f64 {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let tolerance = self.tolerance(corner);
+        let shape = self.shape(before);
         if before.smooth {
-            (STEADY_EXCESS - LESS_BESIDE) * tolerance + before.outward
+            (STEADY_EXCESS - LESS_BESIDE) * tolerance + shape.outward
         } else {
-            tolerance - UNUSED * before.sagitta.max(after.sagitta)
+            tolerance - UNUSED * shape.sagitta.max(self.shape(after).sagitta)
         }
     }
 
@@ -39,7 +47,8 @@ impl<const N: usize> LookAhead<N> {
     pub(super) fn room(&self, corner: usize, bound: f64) -> (f64, bool) {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let tolerance = self.tolerance(corner);
-        let sagitta = before.sagitta.max(after.sagitta);
+        let outward = self.shape(before).outward;
+        let sagitta = self.shape(before).sagitta.max(self.shape(after).sagitta);
         if sagitta <= 0.0 || bound <= tolerance - sagitta {
             return (tolerance, false);
         }
@@ -53,7 +62,7 @@ impl<const N: usize> LookAhead<N> {
             Some(arc) if before.smooth => {
                 // Turns of the arc itself lead inside, where the vertex counts against them.
                 let inside = self.schedule.contribution_of(&self.pulses, arc);
-                let at_vertex = before.outward.min(2.0 * inside - before.outward);
+                let at_vertex = outward.min(2.0 * inside - outward);
                 (STEADY_EXCESS * tolerance + at_vertex.min(beside()), true)
             }
             _ => (tolerance + beside().min(0.0), true),
@@ -63,18 +72,19 @@ impl<const N: usize> LookAhead<N> {
     /// By how much the bound at both ends of a chord may exceed the tolerance for the sake of its middle.
     fn room_beside(&self, index: usize) -> f64 {
         let chord = &self.pulses[index];
-        if chord.sagitta <= 0.0 {
+        let shape = self.shape(chord);
+        if shape.sagitta <= 0.0 {
             return f64::INFINITY;
         }
-        let begins_outward = match index.checked_sub(1).map(|before| &self.pulses[before]) {
-            Some(before) if before.smooth => before.outward,
-            _ => 0.0,
-        };
-        let inside = chord.sagitta - 0.5 * (begins_outward + chord.outward);
-        let turn = chord.curvature * chord.length;
-        let turning = self.schedule.turning(&self.pulses, turn) / chord.curvature;
+        let begins_outside = index
+            .checked_sub(1)
+            .is_some_and(|before| self.pulses[before].smooth);
+        let ends = f64::from(u8::from(begins_outside)) + f64::from(u8::from(chord.smooth));
+        let inside = shape.sagitta - 0.5 * ends * shape.outward;
+        let turn = shape.curvature * chord.length;
+        let turning = self.schedule.turning(&self.pulses, turn) / shape.curvature;
         // While the mean goes along the chord, what is on the arc goes less far beside a faster pulse.
         let along = (chord.feed / self.schedule.rate()).min(1.0);
-        chord.sagitta * turning.min(1.0) * along * along - inside
+        shape.sagitta * turning.min(1.0) * along * along - inside
     }
 }
