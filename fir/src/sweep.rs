@@ -258,29 +258,28 @@ impl<const N: usize> Sweep<N> {
             if since <= 0.0 {
                 break;
             }
-            let change = |response: fn(&CubicChain, f64) -> f64, since: f64, after: f64| {
-                response(&self.chain, since) - response(&self.chain, after)
-            };
-            position += pulse.velocity * change(CubicChain::position, since, after);
-            let (since, after) = (self.snapped(since), self.snapped(after));
-            velocity += pulse.velocity * change(CubicChain::velocity, since, after);
-            acceleration += pulse.velocity * change(CubicChain::acceleration, since, after);
+            let (begun, ended) = (self.response(since), self.response(after));
+            position += pulse.velocity * (begun[0] - ended[0]);
+            velocity += pulse.velocity * (begun[1] - ended[1]);
+            acceleration += pulse.velocity * (begun[2] - ended[2]);
         }
         self.state.position = position;
         self.state.velocity = velocity;
         self.state.acceleration = acceleration;
     }
 
-    /// A time since a step that is exactly none, or exactly the whole delay, where it nearly is, so
-    /// that nothing is left of the acceleration.
-    fn snapped(&self, since: f64) -> f64 {
-        if since.abs() <= SAME_INSTANT {
-            0.0
-        } else if (since - self.chain.total()).abs() <= SAME_INSTANT {
-            2.0 * self.chain.total()
-        } else {
-            since
+    /// Position, velocity and acceleration some time after a unit step: exactly those before it and those
+    /// after the whole delay where it is nearly one of these, so that nothing is left of the acceleration.
+    fn response(&self, since: f64) -> [f64; 3] {
+        let total = self.chain.total();
+        if since <= SAME_INSTANT {
+            return [0.0; 3];
         }
+        if since >= total - SAME_INSTANT {
+            return [since - 0.5 * total, 1.0, 0.0];
+        }
+        let (position, velocity) = self.chain.response(since);
+        [position, velocity, self.chain.acceleration(since)]
     }
 
     fn set_back_clock(&mut self) {
