@@ -145,6 +145,7 @@ impl<const N: usize> LookAhead<N> {
     }
 
     /// Takes the next pulse; what is decided goes to `out`.
+    #[inline]
     pub(crate) fn push(&mut self, pulse: Pulse<N>, out: &mut impl FnMut(Command<N>)) {
         self.unchanged += 1;
         if let Some(before) = self.pulses.last_mut() {
@@ -163,8 +164,14 @@ impl<const N: usize> LookAhead<N> {
             self.limit(self.pulses.len() - 1);
         }
         if self.legs >= PENDING {
-            self.decide(out);
+            self.go_on(out);
         }
+    }
+
+    /// Decides what waits and hands the first of it out.
+    #[inline(never)]
+    fn go_on(&mut self, out: &mut impl FnMut(Command<N>)) {
+        self.decide(out);
         // Fewer wait where the motion came to rest before them.
         if self.legs >= PENDING {
             let mut until = self.fixed;
