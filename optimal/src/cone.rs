@@ -7,7 +7,8 @@
 mod side;
 
 pub(crate) use self::side::{Centre, Reach, Side, Sums};
-use toolglide_kinematics::{Vector, nalgebra::SMatrix};
+use crate::block::{Square, outer};
+use toolglide_kinematics::Vector;
 
 /// A slack starts at least this far inside, in shares of the bound.
 pub(crate) const LEAST_SLACK: f64 = 0.1;
@@ -149,6 +150,17 @@ impl<const N: usize> Scaling<N> {
         }
     }
 
+    /// The weight times a vector.
+    #[inline(always)]
+    fn weigh(&self, of: &Pair<N>) -> Pair<N> {
+        let by_square = 1.0 / (self.size * self.size);
+        let along = 2.0 * (self.point.head * of.head - self.point.tail.dot(&of.tail));
+        Pair {
+            head: (self.point.head * along - of.head) * by_square,
+            tail: (of.tail - self.point.tail * along) * by_square,
+        }
+    }
+
     #[inline(always)]
     fn weight(&self) -> ConeWeight<N> {
         let by_square = 1.0 / (self.size * self.size);
@@ -157,7 +169,7 @@ impl<const N: usize> Scaling<N> {
         ConeWeight {
             head: (2.0 * head * head - 1.0) * by_square,
             mixed: tail * (-2.0 * head * by_square),
-            tail: (tail * (tail * 2.0).transpose() + SMatrix::<f64, N, N>::identity()) * by_square,
+            tail: (outer(tail, &(tail * 2.0)) + Square::identity()) * by_square,
         }
     }
 }
@@ -167,17 +179,7 @@ impl<const N: usize> Scaling<N> {
 pub(crate) struct ConeWeight<const N: usize> {
     pub(crate) head: f64,
     pub(crate) mixed: Vector<N>,
-    pub(crate) tail: SMatrix<f64, N, N>,
-}
-
-impl<const N: usize> ConeWeight<N> {
-    #[inline(always)]
-    pub(crate) fn times(&self, of: &Pair<N>) -> Pair<N> {
-        Pair {
-            head: self.head * of.head + self.mixed.dot(&of.tail),
-            tail: self.mixed * of.head + self.tail * of.tail,
-        }
-    }
+    pub(crate) tail: Square<N>,
 }
 
 /// One cone: a pair that must stay inside.
@@ -237,7 +239,7 @@ impl<const N: usize> Cone<N> {
             .residual
             .max(self.residual.head.abs())
             .max(self.residual.tail.amax());
-        (weight, weight.times(&self.residual))
+        (weight, self.scaling.weigh(&self.residual))
     }
 
     /// As [`Side::predict`].
@@ -275,7 +277,7 @@ impl<const N: usize> Cone<N> {
         self.target = self
             .scaling
             .down(&scaled.divide(self.scaling.determinant, &product));
-        let residual = self.scaling.weight().times(&self.residual);
+        let residual = self.scaling.weigh(&self.residual);
         residual
             .plus(-1.0, &self.target)
             .plus(centre.kept, &self.first_multiplier)
@@ -285,7 +287,7 @@ impl<const N: usize> Cone<N> {
     #[inline(always)]
     pub(crate) fn aim(&mut self, change: &Pair<N>, reach: &mut Reach) {
         self.slack_change = change.plus(1.0, &self.residual);
-        let weighted = self.scaling.weight().times(&self.slack_change);
+        let weighted = self.scaling.weigh(&self.slack_change);
         self.multiplier_change = self
             .target
             .plus(-1.0, &self.multiplier)
@@ -326,7 +328,7 @@ mod tests {
         let (one, other) = (scaling.down(&slack), scaling.up(&multiplier));
         assert!((one.head - other.head).abs() < 1e-14, "{one:?} {other:?}");
         assert!((one.tail - other.tail).norm() < 1e-14, "{one:?} {other:?}");
-        let weighted = scaling.weight().times(&slack);
+        let weighted = scaling.weigh(&slack);
         assert!(
             (weighted.head - multiplier.head).abs() < 1e-13,
             "{weighted:?}"

@@ -20,10 +20,9 @@ mod root;
 pub(crate) use self::cost::Cost;
 pub(crate) use self::form::Form;
 use self::root::Root;
+use crate::block::{Square, times, transposed_times};
 use crate::spline::State;
-use toolglide_kinematics::{Vector, nalgebra::SMatrix};
-
-pub(crate) type Square<const N: usize> = SMatrix<f64, N, N>;
+use toolglide_kinematics::Vector;
 
 /// Share of a curvature that is kept whatever is eliminated: what rounding may have taken from it,
 /// without which a sum of squares could turn negative.
@@ -145,9 +144,11 @@ impl<const N: usize> Gradient<N> {
         let last = self.state[2] + jerk.point * weights[3];
         gain.offset = gain.root.share(last);
         self.state = [
-            jerk.point * weights[0] - gain.state[0].tr_mul(&gain.offset),
-            self.state[0] + jerk.point * weights[1] - gain.state[1].tr_mul(&gain.offset),
-            self.state[1] + jerk.point * weights[2] - gain.state[2].tr_mul(&gain.offset),
+            jerk.point * weights[0] - transposed_times(&gain.state[0], &gain.offset),
+            self.state[0] + jerk.point * weights[1]
+                - transposed_times(&gain.state[1], &gain.offset),
+            self.state[1] + jerk.point * weights[2]
+                - transposed_times(&gain.state[2], &gain.offset),
         ];
         self.stretch -= gain.stretch.dot(&gain.offset);
         self.excess += jerk.excess - gain.excess.dot(&gain.offset);
@@ -192,7 +193,7 @@ impl<const N: usize> Gain<N> {
     ) -> (Vector<N>, [Vector<N>; 3]) {
         let mut last = self.offset + self.stretch * stretch + self.excess * excess;
         for (gain, state) in self.state.iter().zip(state) {
-            last += gain * state;
+            last += times(gain, state);
         }
         let last = -self.root.back(last);
         let weights = interval.jerk;

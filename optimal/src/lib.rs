@@ -5,6 +5,7 @@
 //! machines or programs, and no general convex solver.
 
 mod accept;
+mod block;
 mod chords;
 mod cone;
 mod durations;

@@ -7,7 +7,8 @@
     reason = "the indices of blocks run over several arrays at once"
 )]
 
-use super::{Chain, Gain, Gradient, Interval, Local, ROUNDING, Root, Square, StretchGain};
+use super::{Chain, Gain, Gradient, Interval, Local, ROUNDING, Root, StretchGain};
+use crate::block::{Square, outer, times, transposed_product, transposed_times};
 use crate::spline::State;
 use toolglide_kinematics::Vector;
 
@@ -43,7 +44,7 @@ impl<const N: usize> Cost<N> {
     #[inline(always)]
     pub(crate) fn add(&mut self, chain: &Chain<N>, local: &Local<N>) {
         let by_stretch = chain.base * chain.ahead;
-        let pull = local.point * by_stretch;
+        let pull = times(&local.point, &by_stretch);
         for one in 0..3 {
             let weight = chain.weights[one];
             if weight.abs() > 0.0 {
@@ -81,9 +82,11 @@ impl<const N: usize> Cost<N> {
     pub(super) fn times(&self, state: &State<N>) -> State<N> {
         let [[pp, pv, pa], [_, vv, va], [_, _, aa]] = &self.blocks;
         [
-            pp * state[0] + pv * state[1] + pa * state[2],
-            pv.tr_mul(&state[0]) + vv * state[1] + va * state[2],
-            pa.tr_mul(&state[0]) + va.tr_mul(&state[1]) + aa * state[2],
+            times(pp, &state[0]) + times(pv, &state[1]) + times(pa, &state[2]),
+            transposed_times(pv, &state[0]) + times(vv, &state[1]) + times(va, &state[2]),
+            transposed_times(pa, &state[0])
+                + transposed_times(va, &state[1])
+                + times(aa, &state[2]),
         ]
     }
 
@@ -151,11 +154,11 @@ impl<const N: usize> Cost<N> {
         let whole = [0, 1, 2].map(|one| self.blocks[one][one].diagonal());
         for one in 0..3 {
             for two in one..3 {
-                self.blocks[one][two] -= gain.state[one].tr_mul(&gain.state[two]);
+                self.blocks[one][two] -= transposed_product(&gain.state[one], &gain.state[two]);
             }
-            self.by_stretch[one] -= gain.state[one].tr_mul(&gain.stretch);
-            self.by_excess[one] -= gain.state[one].tr_mul(&gain.excess);
-            self.slope.state[one] -= gain.state[one].tr_mul(&gain.offset);
+            self.by_stretch[one] -= transposed_times(&gain.state[one], &gain.stretch);
+            self.by_excess[one] -= transposed_times(&gain.state[one], &gain.excess);
+            self.slope.state[one] -= transposed_times(&gain.state[one], &gain.offset);
         }
         // Rounding differs on both sides of the diagonal; unchecked, the difference multiplies.
         for one in 0..3 {
@@ -191,7 +194,7 @@ impl<const N: usize> Cost<N> {
         for order in 0..3 {
             let row = gain.state[order] * gain.by_curvature;
             for other in order..3 {
-                self.blocks[order][other] -= row * gain.state[other].transpose();
+                self.blocks[order][other] -= outer(&row, &gain.state[other]);
             }
             self.by_excess[order] -= row * gain.excess;
         }

@@ -7,7 +7,8 @@
     reason = "the indices of blocks run over several arrays at once"
 )]
 
-use super::{Cost, Gradient, Local, Slope, Square};
+use super::{Cost, Gradient, Local, Slope};
+use crate::block::{Square, times};
 use crate::spline::State;
 use toolglide_kinematics::Vector;
 
@@ -91,10 +92,10 @@ impl<const N: usize> Cost<N> {
     /// adds to the slope there.
     pub(crate) fn add_jerk(&mut self, of: &Local<N>, form: &Form<N>) -> Slope<N> {
         let push = Slope {
-            point: of.point * form.offset,
+            point: times(&of.point, &form.offset),
             excess: of.mixed.dot(&form.offset),
         };
-        let moved = of.point * form.stretch;
+        let moved = times(&of.point, &form.stretch);
         for order in 0..3 {
             for other in order..3 {
                 self.blocks[order][other] += of.point * (form.state[order] * form.state[other]);

@@ -6,7 +6,7 @@
 //!
 //! Source: the factorisation of Cholesky. Not here: what is eliminated, see [`cost`](super::cost).
 
-use super::Square;
+use crate::block::Square;
 use toolglide_kinematics::{Vector, nalgebra::SMatrix};
 
 /// Lower triangle whose product with its transpose is the curvature; reciprocals on the diagonal.

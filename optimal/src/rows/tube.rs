@@ -6,9 +6,10 @@
 #[cfg(test)]
 use super::Kept;
 use super::Rows;
+use crate::block::{outer, times};
 use crate::cone::{Centre, Cone, ConeWeight, LEAST_SLACK, Pair, Reach, Side, Sums};
 use crate::front::{Local, Slope};
-use toolglide_kinematics::{Vector, nalgebra::SMatrix};
+use toolglide_kinematics::Vector;
 
 /// Within a distance of a straight segment.
 ///
@@ -195,23 +196,25 @@ impl<const N: usize> Rows<N> for InTube<N> {
         let mut local = Local::default();
         if bound.capsule {
             let by_radius = bound.by_radius;
-            let across = tail * bound.direction;
+            let across = times(&tail, &bound.direction);
             let length = bound.scaled_length();
             self.by_point = across * (-length * by_radius);
             self.by_excess = -length * mixed.dot(&bound.direction);
             self.by_curvature =
                 1.0 / (length * length * across.dot(&bound.direction) + low.0 + high.0);
             local.point = tail * (by_radius * by_radius)
-                - self.by_point * (self.by_point * self.by_curvature).transpose();
+                - outer(&self.by_point, &(self.by_point * self.by_curvature));
             local.mixed = mixed * by_radius - self.by_point * (self.by_excess * self.by_curvature);
             local.excess = head - self.by_excess * self.by_excess * self.by_curvature;
         } else {
             let by_length = 1.0 / bound.length;
-            let across =
-                SMatrix::<f64, N, N>::identity() - bound.direction * bound.direction.transpose();
-            let along = bound.direction * by_length;
-            local.point = across * tail * across * (bound.by_radius * bound.by_radius)
-                + along * (along * (low.0 + high.0)).transpose();
+            let by_square = bound.by_radius * bound.by_radius;
+            let direction = &bound.direction;
+            let along = direction * by_length;
+            // Slack and multiplier have no part along the tube, so that the weight goes straight on there.
+            let straight_on = direction.dot(&times(&tail, direction)) * by_square;
+            let kept = (low.0 + high.0) * by_length * by_length - straight_on;
+            local.point = tail * by_square + outer(direction, &(direction * kept));
             local.mixed = bound.across(&mixed) + along * (low.0 - high.0);
             local.excess = head + low.0 + high.0;
         }
