@@ -3,7 +3,7 @@
 //! With the durations fixed, the motion through a window is a convex problem; with them free it is
 //! linearised where the last one ended, shortened within a trust region, and linearised again. The
 //! point of linearisation need not obey the dynamics, because the next problem makes it so. Every
-//! third time, and at the end, the motion is restored with the durations fixed; only a restored
+//! fourth time, and at the end, the motion is restored with the durations fixed; only a restored
 //! motion is an answer. Where none can be restored, the durations grow a little.
 //!
 //! Source: sequential convex programming; the linearisation in the durations is our own. Not here:
@@ -24,7 +24,11 @@ const FIRST_TRUST: f64 = 0.4;
 const LEAST_TRUST: f64 = 1e-3;
 
 /// Share to which the trust falls at least where a motion cannot be restored.
-const RESTORED_TRUST: f64 = 0.02;
+const RESTORED_TRUST: f64 = 2e-3;
+
+/// What is left of [`ENOUGH`] by the next trust where nothing is gained anymore: durations then go to and
+/// fro as far as they may, and the excess goes with the square of that.
+const LEAVES: f64 = 0.5;
 
 /// A predicted gain below this share of the duration is not worth another problem.
 const LEAST_GAIN: f64 = 1e-3;
@@ -36,7 +40,7 @@ const ENOUGH: f64 = 1e-4;
 const PLENTY: f64 = 2e-5;
 
 /// After so many shortenings the motion is restored.
-const RESTORE_EVERY: usize = 3;
+const RESTORE_EVERY: usize = 4;
 
 /// Shortenings more, carefully, where no motion was restored.
 const REPAIRS: usize = 2;
@@ -46,12 +50,17 @@ const REPAIR_WEIGHT: f64 = 250.0;
 /// Shares by which all durations grow, one after the other, where nothing else gives a motion.
 const SLOWER: [f64; 5] = [2e-3, 4e-3, 8e-3, 1.6e-2, 3.2e-2];
 
-/// What a shortening must come to. It is linearised again, so more digits are of no use.
+/// What a shortening must come to where durations hardly change anymore.
 const SHORTENED: Precision = Precision {
     gap: 1e-4,
     miss: 1e-4,
     smoothing: SMOOTHING,
 };
+
+/// The gap that is left, as a share of what the shortening before gained, and at the most. It is linearised
+/// again, so more digits are of no use.
+const GAP_SHARE: f64 = 0.1;
+const LARGEST_GAP: f64 = 1e-2;
 
 /// What a restoration must come to.
 const RESTORED: Precision = Precision {
@@ -243,8 +252,9 @@ impl<const N: usize> SequentialSolver<N> {
         used
     }
 
-    fn shorten(&mut self, trust: f64, excess: f64) -> Option<Promise> {
-        if !self.run(Goal::Shorten { excess }, trust, &SHORTENED) {
+    fn shorten(&mut self, trust: f64, excess: f64, gap: f64) -> Option<Promise> {
+        let precision = Precision { gap, ..SHORTENED };
+        if !self.run(Goal::Shorten { excess }, trust, &precision) {
             return None;
         }
         let mut gain = 0.0;
@@ -276,23 +286,29 @@ impl<const N: usize> SequentialSolver<N> {
 
     /// Shortens and restores until nothing is gained; gives the least excess of the restored.
     fn improve(&mut self, effort: usize) -> f64 {
-        let mut trust = FIRST_TRUST;
+        let (mut trust, mut gap) = (FIRST_TRUST, LARGEST_GAP);
         let mut least = f64::INFINITY;
         for round in 1..=effort {
-            let Some(promise) = self.shorten(trust, EXCESS_WEIGHT) else {
+            let Some(promise) = self.shorten(trust, EXCESS_WEIGHT, gap) else {
                 trust *= 0.25;
                 if trust < LEAST_TRUST {
                     break;
                 }
                 continue;
             };
+            gap = (GAP_SHARE * promise.gain.abs()).clamp(SHORTENED.gap, LARGEST_GAP);
             let settled = promise.gain.abs() < LEAST_GAIN;
             if (settled && promise.excess < ENOUGH) || round % RESTORE_EVERY == 0 || round == effort
             {
                 let excess = self.restore().unwrap_or(f64::INFINITY);
                 least = least.min(excess);
                 if excess > ENOUGH {
-                    trust = (0.5 * trust).max(RESTORED_TRUST);
+                    let less = if settled && excess.is_finite() {
+                        (LEAVES * ENOUGH / excess).sqrt().min(0.5)
+                    } else {
+                        0.5
+                    };
+                    trust = (less * trust).max(RESTORED_TRUST);
                 } else if settled {
                     break;
                 }
@@ -316,7 +332,7 @@ impl<const N: usize> WindowSolver<N> for SequentialSolver<N> {
             if self.best_duration.is_some() {
                 break;
             }
-            if self.shorten(trust, REPAIR_WEIGHT).is_some() {
+            if self.shorten(trust, REPAIR_WEIGHT, SHORTENED.gap).is_some() {
                 excess = excess.min(self.restore().unwrap_or(f64::INFINITY));
             }
             trust *= 0.5;
