@@ -26,6 +26,7 @@ use crate::cubic::CubicChain;
 use crate::pulse::Pulse;
 use crate::settings::{designed_for, largest_change};
 use correction::Standing;
+use feedrates::Corners;
 use toolglide_kinematics::{Limits, Vector};
 
 /// Pulses that wait before the first of them are handed out.
@@ -39,6 +40,9 @@ const CUT: usize = 2048;
 
 /// Pulses that may still be in the window of the filters; when there are more, the motion rests.
 const CONTEXT: usize = 384;
+
+/// Times that steps are looked for before all corners count as passed at speed.
+const TRIES: u32 = 2;
 
 /// What turns may differ by, relative: above the rounding of vertices, below what changes of velocity may
 /// exceed their bound by.
@@ -280,15 +284,8 @@ impl<const N: usize> LookAhead<N> {
     fn attempt(&mut self, capped: bool) -> bool {
         self.capped = capped;
         self.join(self.fixed);
-        self.sort_corners();
-        self.slow_down();
-        if !capped {
-            self.ramp();
-        }
-        match self.keep_feedrates() {
-            None => return false,
-            Some(true) if !capped => self.ramp(),
-            Some(_) => {}
+        if !self.choose_feedrates() {
+            return false;
         }
         self.overlap_dwells();
         let mut in_step = false;
@@ -300,6 +297,37 @@ impl<const N: usize> LookAhead<N> {
             }
         }
         self.stop_where_faster() || in_step || self.in_step()
+    }
+
+    /// The first choice of feedrates and dwells; `false` where what was handed out is too fast for a move.
+    fn choose_feedrates(&mut self) -> bool {
+        if self.unchanged < self.pulses.len() {
+            for pulse in &mut self.pulses {
+                pulse.careful = false;
+            }
+        }
+        for _ in 0..TRIES {
+            self.sort_corners();
+            self.slow_down();
+            let Some(kept) = self.keep_feedrates(Corners::AtSpeed) else {
+                return false;
+            };
+            self.ramp();
+            if !kept.left_out {
+                return true;
+            }
+            match self.keep_feedrates(Corners::All) {
+                None => return false,
+                Some(kept) if !kept.slower => return true,
+                // Steps begin behind what has to be slow, so they are found anew.
+                Some(_) => self.join(self.fixed),
+            }
+        }
+        self.sort_corners();
+        self.slow_down();
+        let slow = self.keep_feedrates(Corners::All).is_some();
+        self.ramp();
+        slow
     }
 
     fn time(&mut self) {

@@ -46,6 +46,8 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) part: bool,
     /// Whether the corner at its end was sorted already, and pulses before it handed out.
     pub(crate) sorted: bool,
+    /// Whether steps alone do not keep the feedrate of the program beside its end.
+    pub(crate) careful: bool,
 }
 
 impl<const N: usize> Pulse<N> {
@@ -79,6 +81,7 @@ impl<const N: usize> Pulse<N> {
             turn: 0.0,
             pass: false,
             sorted: false,
+            careful: false,
         }
     }
 
@@ -105,6 +108,7 @@ impl<const N: usize> Pulse<N> {
             pass: true,
             part: true,
             sorted: true,
+            careful: false,
             ..*self
         };
         let after = Self {

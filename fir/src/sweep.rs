@@ -107,6 +107,7 @@ impl<const N: usize> Sweep<N> {
                         continue;
                     }
                     self.resting = true;
+                    self.set_back_clock_while_steady();
                     self.taps.push(self.commanded, Vector::zeros());
                 }
                 Command::Pause { duration, serves } => {
@@ -132,6 +133,7 @@ impl<const N: usize> Sweep<N> {
     }
 
     fn begin(&mut self, pulse: &TimedPulse<N>) {
+        self.set_back_clock_while_steady();
         if pulse.gap > SAME_INSTANT {
             self.taps.push(self.commanded, Vector::zeros());
             self.commanded += pulse.gap;
@@ -166,7 +168,8 @@ impl<const N: usize> Sweep<N> {
     fn advance(&mut self, knot: f64) -> Option<Piece<N>> {
         let duration = knot - self.time;
         if duration <= SAME_INSTANT {
-            self.arrive(knot);
+            // What comes a little later comes now, and is told so.
+            self.arrive(self.time);
             return None;
         }
         let serves = self.serves();
@@ -177,7 +180,7 @@ impl<const N: usize> Sweep<N> {
         self.since_anchor += 1;
         self.arrive(knot);
         let end = self.state.position;
-        self.set_back_clock();
+        self.set_back_clock(self.time);
         Some(Piece::new(&start, duration, end, serves))
     }
 
@@ -282,11 +285,20 @@ impl<const N: usize> Sweep<N> {
         [position, velocity, self.chain.acceleration(since)]
     }
 
-    fn set_back_clock(&mut self) {
-        if self.time < CLOCK_SPAN {
+    /// What comes next must not be told in the digits that are left of the time of a long pulse; while
+    /// nothing changes, it does not matter when the last change was.
+    fn set_back_clock_while_steady(&mut self) {
+        if self.taps.next_knot().is_infinite() {
+            self.set_back_clock(self.commanded);
+        }
+    }
+
+    /// Sets the clock back so that a time is short of a span.
+    fn set_back_clock(&mut self, time: f64) {
+        if time < CLOCK_SPAN {
             return;
         }
-        let span = (self.time / CLOCK_SPAN).floor() * CLOCK_SPAN;
+        let span = (time / CLOCK_SPAN).floor() * CLOCK_SPAN;
         self.time -= span;
         self.commanded -= span;
         self.taps.set_back(span);

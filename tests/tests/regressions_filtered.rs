@@ -223,3 +223,25 @@ fn a_move_is_followed_no_faster_than_its_own_feedrate_where_the_one_before_is_fa
 ] };
     holds(&course, &[[500.0, 2500.0, 200000.0]; 2]);
 }
+
+/// After a move of hours, times had so few digits left that knots which coincide did not.
+#[test]
+#[rustfmt::skip]
+fn a_rapid_behind_a_move_of_hours_ends_where_it_should() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(Lead::Line([0.0, -11.839405643]), 0.000782166666666667, 0.00175928),
+    go(Lead::Line([0.5, -26.9]), INF, 0.00175928),
+    go(Lead::Line([0.5, -26.8]), 0.1, 0.00175928),
+] };
+    holds(&course, &[[500.0, 2500.0, 200000.0]; 2]);
+}
+
+#[test]
+#[rustfmt::skip]
+fn a_slow_move_behind_a_fast_one_takes_no_longer_without_a_stop_than_with_one() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(Lead::Line([3.2245154131627887, 0.0]), 161.28741388151116, 0.0011922131028586896),
+    go(Lead::Line([3.2245154131627887, -1.0]), 1.0, 0.0011922131028586896),
+] };
+    holds(&course, &[[22.258084371955018, 159.9008382310336, 36257.0661330523]; 2]);
+}

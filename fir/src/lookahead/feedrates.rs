@@ -10,32 +10,68 @@ use super::LookAhead;
 /// A pulse is cut where it is so much longer than what has to be slow.
 const WORTH_A_CUT: f64 = 1.2;
 
+/// Beside which corners feedrates are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Corners {
+    /// All, and those where anything had to be slower are remembered.
+    All,
+    /// Those where no steps are wanted, and those that are remembered.
+    AtSpeed,
+}
+
+/// What became of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Kept {
+    /// Whether anything had to be slower.
+    pub(super) slower: bool,
+    /// Whether a corner was left out.
+    pub(super) left_out: bool,
+}
+
 impl<const N: usize> LookAhead<N> {
-    /// Slows what is in the window together with a slower move; whether anything had to be, `None` where it
-    /// was handed out.
-    pub(super) fn keep_feedrates(&mut self) -> Option<bool> {
+    /// Slows what is in the window together with a slower move; `None` where that was handed out.
+    pub(super) fn keep_feedrates(&mut self, corners: Corners) -> Option<Kept> {
+        let mut kept = Kept::default();
         if self.unchanged >= self.pulses.len() {
-            return Some(false);
+            return Some(kept);
         }
-        let mut slower = false;
         let mut corner = self.pulses.len() - 1;
         while corner > 0 {
             corner -= 1;
             let feed = self.pulses[corner + 1].programmed;
             if feed < self.pulses[corner].programmed {
+                if !self.is_asked_for(corner, corners) {
+                    kept.left_out = true;
+                    continue;
+                }
                 let count = self.pulses.len();
-                slower |= self.slow_before(corner, feed)?;
+                let here = self.slow_before(corner, feed)?;
                 corner += self.pulses.len() - count;
+                self.pulses[corner].careful |= here;
+                kept.slower |= here;
             }
         }
         while corner + 1 < self.pulses.len() {
             let feed = self.pulses[corner].programmed;
             if feed < self.pulses[corner + 1].programmed {
-                slower |= self.slow_behind(corner, feed);
+                if self.is_asked_for(corner, corners) {
+                    let here = self.slow_behind(corner, feed);
+                    self.pulses[corner].careful |= here;
+                    kept.slower |= here;
+                } else {
+                    kept.left_out = true;
+                }
             }
             corner += 1;
         }
-        Some(slower)
+        Some(kept)
+    }
+
+    fn is_asked_for(&self, corner: usize, corners: Corners) -> bool {
+        let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
+        let feed = before.programmed.min(after.programmed);
+        let at_speed = before.pass || before.turn <= 0.0 || feed <= before.step.min(after.step);
+        corners == Corners::All || before.careful || at_speed
     }
 
     /// How far the window reaches to either side of a corner at a feedrate.

@@ -26,8 +26,11 @@ const WORTH_A_CUT: f64 = 0.5;
 const CRAWL: f64 = 0.02;
 
 impl<const N: usize> LookAhead<N> {
-    /// Lowers feedrates and cuts long pulses into steps, from both ends.
+    /// Lowers feedrates and cuts long pulses into steps, from both ends, unless every pulse may follow rest.
     pub(super) fn ramp(&mut self) {
+        if self.capped {
+            return;
+        }
         // Changes between velocities of which each is half of what may change are never too large.
         if self
             .pulses

@@ -3,6 +3,7 @@
 //! Source: ours. Not here: how what goes on is planned.
 
 use super::LookAhead;
+use super::feedrates::Corners;
 use crate::pulse::Pulse;
 
 impl<const N: usize> LookAhead<N> {
@@ -73,7 +74,10 @@ impl<const N: usize> LookAhead<N> {
         }
         self.ramp();
         // What was handed out is slow enough, or a stop away.
-        if self.keep_feedrates() == Some(true) {
+        if self
+            .keep_feedrates(Corners::All)
+            .is_some_and(|kept| kept.slower)
+        {
             self.ramp();
         }
         self.time();
