@@ -24,7 +24,7 @@ const FIRST_TRUST: f64 = 0.4;
 const LEAST_TRUST: f64 = 1e-3;
 
 /// Share to which the trust falls at least where a motion cannot be restored.
-const RESTORED_TRUST: f64 = 2e-3;
+const RESTORED_TRUST: f64 = 0.02;
 
 /// What is left of [`ENOUGH`] by the next trust where nothing is gained anymore: durations then go to and
 /// fro as far as they may, and the excess goes with the square of that.
