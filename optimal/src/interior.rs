@@ -192,26 +192,8 @@ impl<const N: usize> Interior<N> {
             self.go(problem);
             let mut reach = Reach::default();
             self.predict(problem, &mut reach);
-            let (primal, dual) = (1.0 / reach.primal.max(1.0), 1.0 / reach.dual.max(1.0));
-            let predicted = sums.complementarity
-                + primal * reach.by_slack
-                + dual * reach.by_multiplier
-                + primal * dual * reach.by_both;
-            let share = (predicted / sums.complementarity).clamp(0.0, 1.0).powi(3);
-            let share = share.max(LEAST_CENTERING);
-            let centre = Centre {
-                kept: if last < LOST_STEP {
-                    share * unbound
-                } else {
-                    0.0
-                },
-                complementarity: share * sums.complementarity / degree,
-                second_order: if primal.min(dual) < SHORT_STEP {
-                    primal * dual
-                } else {
-                    1.0
-                },
-            };
+            let keep = if last < LOST_STEP { unbound } else { 0.0 };
+            let centre = centre(sums.complementarity, &reach, degree, keep);
             self.correct(problem, goal, unit, precision.smoothing, centre);
             self.go(problem);
             if !self.excess_change.is_finite() {
@@ -343,6 +325,27 @@ impl<const N: usize> Interior<N> {
         for (jerk, change) in self.jerks.iter_mut().zip(&self.jerk_changes) {
             *jerk += change * primal;
         }
+    }
+}
+
+/// What the correcting step aims at after a predicted one: the less that one gains, the nearer to the middle,
+/// and the more it keeps of what the first multipliers missed.
+fn centre(complementarity: f64, reach: &Reach, degree: f64, keep: f64) -> Centre {
+    let (primal, dual) = (1.0 / reach.primal.max(1.0), 1.0 / reach.dual.max(1.0));
+    let predicted = complementarity
+        + primal * reach.by_slack
+        + dual * reach.by_multiplier
+        + primal * dual * reach.by_both;
+    let left = (predicted / complementarity).clamp(0.0, 1.0);
+    let share = (left * left * left).max(LEAST_CENTERING);
+    Centre {
+        complementarity: share * complementarity / degree,
+        second_order: if primal.min(dual) < SHORT_STEP {
+            primal * dual
+        } else {
+            1.0
+        },
+        kept: share * keep,
     }
 }
 
