@@ -11,9 +11,9 @@ use crate::taps::{SAME_INSTANT, Taps};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Piece, Sample, Serves, Vector};
 
-/// Knots after which the state is computed afresh: rounding of so many steps is far below what the
-/// judge can see.
-const KNOTS_TO_ANCHOR: u32 = 32;
+/// Knots of each tap after which the state is computed afresh: rounding of so many steps is far below what
+/// the judge can see.
+const KNOTS_TO_ANCHOR: usize = 8;
 
 /// Pieces longer than this share of the delay of the chain start from a state computed afresh,
 /// because time squared makes the rounding of the acceleration a length.
@@ -52,7 +52,7 @@ pub(crate) struct Sweep<const N: usize> {
     /// End of the last pulse commanded.
     commanded: f64,
     resting: bool,
-    since_anchor: u32,
+    since_anchor: usize,
 }
 
 impl<const N: usize> Sweep<N> {
@@ -193,7 +193,7 @@ impl<const N: usize> Sweep<N> {
         let lasts = next.min(self.horizon()) - self.time;
         if self.resting && next.is_infinite() {
             self.land();
-        } else if self.since_anchor >= KNOTS_TO_ANCHOR
+        } else if self.since_anchor >= KNOTS_TO_ANCHOR * self.taps.count()
             || lasts > LONG_PIECE * self.chain.total()
             || lasts > LONG_BESIDE_SHORT * self.chain.short()
         {

@@ -11,6 +11,12 @@ use toolglide_kinematics::Vector;
 /// minutes.
 pub(crate) const SAME_INSTANT: f64 = 1e-12;
 
+/// Taps of a chain without a comb.
+const FEW: usize = 4;
+
+/// Knots after which the jerk of more taps is summed afresh.
+const KNOTS_TO_SUM: u32 = 32;
+
 /// A change of the commanded velocity.
 #[derive(Clone, Copy, Debug)]
 struct Step<const N: usize> {
@@ -34,19 +40,24 @@ struct Tap<const N: usize> {
 /// All delays of a chain, and the steps that have not passed all of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Taps<const N: usize> {
+    /// The last one has the longest delay.
     taps: Vec<Tap<N>>,
     steps: VecDeque<Step<N>>,
-    /// When the next step arrives at a tap; never while none is known.
+    /// When the next step arrives at any tap; never while none is known.
     due: f64,
+    jerk: Vector<N>,
+    knots_since_sum: u32,
 }
 
 impl<const N: usize> Taps<N> {
     /// Room for a chain and for some steps.
     pub(crate) fn new(chain: &CubicChain, capacity: usize) -> Self {
         Self {
-            taps: Vec::with_capacity(4 * chain.comb().len()),
+            taps: Vec::with_capacity(FEW * chain.comb().len()),
             steps: VecDeque::with_capacity(capacity),
             due: f64::INFINITY,
+            jerk: Vector::zeros(),
+            knots_since_sum: 0,
         }
     }
 
@@ -57,6 +68,7 @@ impl<const N: usize> Taps<N> {
         let product = long * short;
         self.taps.clear();
         self.due = f64::INFINITY;
+        self.jerk = Vector::zeros();
         for tooth in chain.comb() {
             for (delay, sign) in [(0.0, 1.0), (short, -1.0), (long, -1.0), (long + short, 1.0)] {
                 self.taps.push(Tap {
@@ -68,6 +80,11 @@ impl<const N: usize> Taps<N> {
                 });
             }
         }
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.taps.len()
     }
 
     /// The commanded velocity changes.
@@ -90,25 +107,39 @@ impl<const N: usize> Taps<N> {
     /// Lets the steps that are due arrive at their taps; gives the jerk, and the acceleration that comes
     /// too early.
     pub(crate) fn arrive(&mut self, knot: f64) -> (Vector<N>, Vector<N>) {
-        let mut jerk = Vector::zeros();
         let mut ahead = Vector::zeros();
-        let mut oldest = usize::MAX;
-        self.due = f64::INFINITY;
+        // Few taps are summed, of many only what changes.
+        let few = self.taps.len() <= FEW;
+        let mut jerk = if few { Vector::zeros() } else { self.jerk };
+        let mut soonest = f64::INFINITY;
         for tap in &mut self.taps {
             while tap.due <= knot + SAME_INSTANT {
                 // Instants that are one are not quite the same: what the jerk does too early.
                 let early = tap.due - knot;
                 let held = self.steps[tap.next].velocity * tap.weight;
-                ahead += (held - tap.held) * early;
+                let change = held - tap.held;
+                ahead += change * early;
+                if !few {
+                    jerk += change;
+                }
                 tap.held = held;
                 tap.next += 1;
                 let next = self.steps.get(tap.next);
                 tap.due = next.map_or(f64::INFINITY, |step| step.time + tap.delay);
             }
-            self.due = self.due.min(tap.due);
-            oldest = oldest.min(tap.next);
-            jerk += tap.held;
+            if few {
+                jerk += tap.held;
+            }
+            soonest = soonest.min(tap.due);
         }
+        self.due = soonest;
+        self.jerk = jerk;
+        self.knots_since_sum += 1;
+        if !few && self.knots_since_sum >= KNOTS_TO_SUM {
+            self.sum();
+        }
+        // What has passed the longest delay has passed all.
+        let oldest = self.taps.last().map_or(0, |tap| tap.next);
         if oldest > 0 {
             for _ in 0..oldest {
                 self.steps.pop_front();
@@ -117,7 +148,13 @@ impl<const N: usize> Taps<N> {
                 tap.next -= oldest;
             }
         }
-        (jerk, ahead)
+        (self.jerk, ahead)
+    }
+
+    /// The jerk from what every tap holds.
+    fn sum(&mut self) {
+        self.knots_since_sum = 0;
+        self.jerk = self.taps.iter().map(|tap| tap.held).sum();
     }
 
     /// Sets the clock back.
