@@ -25,6 +25,7 @@ use crate::command::{Command, TimedPulse};
 use crate::cubic::CubicChain;
 use crate::pulse::Pulse;
 use crate::settings::{designed_for, largest_change};
+use corners::RunEnd;
 use correction::Standing;
 use feedrates::Corners;
 use toolglide_kinematics::{Limits, Vector};
@@ -93,8 +94,8 @@ pub(crate) struct LookAhead<const N: usize> {
     schedule: Schedule,
     standing: Vec<Standing>,
     /// How far corners are from both ends of their runs.
-    behind: Vec<f64>,
-    ahead: Vec<f64>,
+    behind: Vec<RunEnd>,
+    ahead: Vec<RunEnd>,
     slower: Vec<f64>,
     longer: Vec<f64>,
 }

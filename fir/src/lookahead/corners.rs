@@ -17,6 +17,15 @@ const PASSING_STEPS: u32 = 8;
 /// A passing feedrate is close enough when its bound is within this share below the tolerance.
 const PASSING_PRECISION: f64 = 0.005;
 
+/// An end of a run of pulses along one arc.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RunEnd {
+    /// How far away it is.
+    distance: f64,
+    /// Whether another arc is there.
+    meets_arc: bool,
+}
+
 impl<const N: usize> LookAhead<N> {
     /// Overlap of a corner by itself: as much is missing before it as is gained behind it, and the
     /// tolerance bounds both.
@@ -29,7 +38,7 @@ impl<const N: usize> LookAhead<N> {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let feeds = [before.feed.min(most), after.feed.min(most)];
         let total = self.chain.total();
-        let reach = self.allowed(corner) / before.turn;
+        let reach = self.allowed(corner, false) / before.turn;
         if reach >= 0.5 * total * feeds[0].min(feeds[1]) {
             return total;
         }
@@ -96,7 +105,7 @@ impl<const N: usize> LookAhead<N> {
                 own >= total
             } else {
                 let slowest = before.feed.min(after.feed);
-                let share = (self.allowed(corner) / (before.turn * half * slowest)).min(1.0);
+                let share = (self.allowed(corner, false) / (before.turn * half * slowest)).min(1.0);
                 let passing = (share * slowest).min(self.turning_feed(corner));
                 let going = self.cost(before, passing) + self.cost(after, passing);
                 let starting = |pulse: &Pulse<N>| self.cost_of_steps(pulse, pulse.step);
@@ -111,10 +120,10 @@ impl<const N: usize> LookAhead<N> {
 
     /// Feedrate at which a corner may be passed if all of its neighbours that are passed are passed
     /// as fast.
-    fn passing_feed(&self, corner: usize) -> f64 {
+    fn passing_feed(&self, corner: usize, meets_arc: bool) -> f64 {
         let pulses = &self.pulses;
         let half = 0.5 * self.chain.total();
-        let allowed = self.allowed(corner);
+        let allowed = self.allowed(corner, meets_arc);
         let mut feed = pulses[corner].feed.max(pulses[corner + 1].feed);
         for _ in 0..PASSING_STEPS {
             let reach = feed * half;
@@ -163,9 +172,14 @@ impl<const N: usize> LookAhead<N> {
             let pulse = &self.pulses[corner];
             // In the middle of an arc its own feedrate is right.
             let reach = pulse.feed * half;
-            let steady = self.behind[corner] >= reach && self.ahead[corner] >= reach;
-            if pulse.pass && pulse.turn > 0.0 && !steady {
-                let feed = self.passing_feed(corner);
+            let within = [self.behind[corner], self.ahead[corner]]
+                .into_iter()
+                .filter(|end| end.distance < reach);
+            let (ends, meets_arc) = within.fold((0, false), |(ends, meets), end| {
+                (ends + 1, meets || end.meets_arc)
+            });
+            if pulse.pass && pulse.turn > 0.0 && ends > 0 {
+                let feed = self.passing_feed(corner, meets_arc);
                 self.slower[corner] = if self.capped || self.pulses[corner].smooth {
                     feed
                 } else {
@@ -203,28 +217,37 @@ impl<const N: usize> LookAhead<N> {
         }
     }
 
-    /// How far each corner is from both ends of its run of pulses along one arc at one feedrate.
+    /// How far each corner is from both ends of its run of pulses along one arc, and what is there.
     fn measure_runs(&mut self) {
         let count = self.pulses.len();
         self.behind.clear();
         self.ahead.clear();
-        self.ahead.resize(count, 0.0);
-        let mut behind = 0.0;
+        self.ahead.resize(count, RunEnd::default());
+        let mut end = RunEnd::default();
         for (index, pulse) in self.pulses.iter().enumerate() {
-            behind += pulse.length;
-            self.behind.push(behind);
-            if !self
-                .pulses
-                .get(index + 1)
-                .is_some_and(|next| pulse.goes_on(next))
-            {
-                behind = 0.0;
+            end.distance += pulse.length;
+            self.behind.push(end);
+            let next = self.pulses.get(index + 1);
+            if !next.is_some_and(|next| pulse.goes_on(next)) {
+                end = RunEnd {
+                    distance: 0.0,
+                    meets_arc: pulse.arc.is_some(),
+                };
             }
         }
         for index in (1..count).rev() {
-            if self.pulses[index - 1].goes_on(&self.pulses[index]) {
-                self.ahead[index - 1] = self.ahead[index] + self.pulses[index].length;
-            }
+            let (pulse, next) = (&self.pulses[index - 1], &self.pulses[index]);
+            self.ahead[index - 1] = if pulse.goes_on(next) {
+                RunEnd {
+                    distance: self.ahead[index].distance + next.length,
+                    ..self.ahead[index]
+                }
+            } else {
+                RunEnd {
+                    distance: 0.0,
+                    meets_arc: next.arc.is_some(),
+                }
+            };
         }
     }
 

@@ -30,13 +30,14 @@ impl<const N: usize> LookAhead<N> {
         arc.map_or_else(Shape::default, |arc| self.arcs.shape_of(arc))
     }
 
-    /// What may be expected to be allowed at a corner.
-    pub(super) fn allowed(&self, corner: usize) -> f64 {
+    /// What may be expected to be allowed at a corner, where another arc may be in its window.
+    pub(super) fn allowed(&self, corner: usize, meets_arc: bool) -> f64 {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let tolerance = self.tolerance(corner);
         let shape = self.shape(before);
         if before.smooth {
-            (STEADY_EXCESS - LESS_BESIDE) * tolerance + shape.outward
+            let less = if meets_arc { LESS_BESIDE } else { 0.0 };
+            (STEADY_EXCESS - less) * tolerance + shape.outward
         } else {
             tolerance - UNUSED * shape.sagitta.max(self.shape(after).sagitta)
         }
