@@ -63,6 +63,11 @@ impl<'m> PoseSampler<'m> {
     /// Takes the piece that follows, once [`PoseSampler::next_tick`] has given `None`.
     pub fn feed(&mut self, piece: PosePiece) {
         self.begin = self.end;
+        // At a pole the tool does not tell where an axis is: it stays where its own move has ended, not where the
+        // last tick has seen it.
+        if let Some(PosePiece::Axes(before)) = &self.piece {
+            self.axes = before.end;
+        }
         // Compensated sum: ten million pieces add up as well as ten.
         let step = piece.duration() - self.compensation;
         let sum = self.end + step;

@@ -2,8 +2,8 @@
 //!
 //! Source: divided differences, less what rounding may add to them. Not here: the tool.
 
-use super::PoseSetPointJudge;
-use crate::machine::KinematicsError;
+use super::{PoseSetPointJudge, Sighting};
+use crate::machine::{AxisKind, KinematicsError};
 use crate::verify::pose::FOUND_SLACK;
 use crate::verify::pose::report::{AxisQuantity, PoseViolation};
 use crate::verify::report::Place;
@@ -12,7 +12,7 @@ impl PoseSetPointJudge<'_> {
     pub(super) fn judge_axes(&mut self, place: Place) {
         let rows = &self.rows;
         let newest = rows.len() - 1;
-        let (time, at) = rows[newest];
+        let Sighting { time, axes: at, .. } = rows[newest];
         for (index, axis) in self.axes.iter().enumerate() {
             let rounding = self.rounding[index];
             if let Some((low, high)) = axis.travel
@@ -59,16 +59,20 @@ impl PoseSetPointJudge<'_> {
                 }
                 let recent = rows.range(rows.len() - count..);
                 let (mut sum, mut noise) = (0.0, 0.0);
-                for (one, (when, positions)) in recent.clone().enumerate() {
+                for (one, row) in recent.clone().enumerate() {
                     let mut product = 1.0;
-                    for (other, (instant, _)) in recent.clone().enumerate() {
+                    for (other, another) in recent.clone().enumerate() {
                         if other != one {
-                            product *= when - instant;
+                            product *= row.time - another.time;
                         }
                     }
                     // Differences from the newest row keep the digits of large positions.
-                    sum += (positions[index] - at[index]) / product;
-                    noise += rounding / product.abs();
+                    sum += (row.axes[index] - at[index]) / product;
+                    let wobble = match axis.kind {
+                        AxisKind::Rotary => row.wobble,
+                        AxisKind::Linear => row.wobble * row.lever,
+                    };
+                    noise += (rounding + wobble) / product.abs();
                 }
                 let certain = factorial * (sum.abs() - noise).max(0.0);
                 peak.raise(certain, time, place);

@@ -1,32 +1,43 @@
 //! The judge of set-points of axes against a path of poses.
 //!
 //! Source: forward kinematics of every row; divided differences for the limits, of which rounding takes
-//! its part, so that what is reported is certain. The axes are judged in `axes`, the tool in `course`. Not
-//! here: motion between the rows, and stops inside the path.
+//! its part, so that what is reported is certain. The axes are judged in `axes`, the tool in `course`. Tip and
+//! tool are followed each for itself. Not here: motion between the rows, stops inside the path, and whether tip
+//! and tool are on the same move at once.
 
 mod axes;
 mod course;
+mod parts;
+mod track;
 
+use super::MEETING_SLACK;
 use super::report::{AxisPeaks, PoseReport, PoseViolation};
-use super::{FOUND_SLACK, MEETING_SLACK};
 use crate::axis_vector::AxisVector;
 use crate::great_circle::angle_between;
 use crate::machine::{Axis, MachineKinematics};
 use crate::pose::ToolPose;
 use crate::pose_leg::{PoseLeg, PosePath};
+use crate::vector::Vector;
 use crate::verify::VerifyError;
 use crate::verify::report::{Peak, Place};
+use parts::{Followed, Row, Way, add};
 use std::collections::VecDeque;
+use track::Track;
 
 /// How far from the machine's zero a tip may be beyond its own distance, for rounding of angles, mm.
 const LEVER: f64 = 500.0;
 
-/// A leg and how near its end was passed.
-struct Expected {
-    leg: PoseLeg,
-    place: Place,
-    tip: f64,
-    orientation: f64,
+/// What an orientation may be rounded by, rad: some operations on numbers up to 1.
+const ORIENTATION_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Axis positions at a time, and by what more than in writing rotary axes may have been rounded there, rad.
+#[derive(Clone, Copy, Debug)]
+struct Sighting {
+    time: f64,
+    axes: AxisVector,
+    wobble: f64,
+    /// Distance from the axes at which the wobble moves the linear ones, mm.
+    lever: f64,
 }
 
 /// Judges set-points of the axes of a machine row by row.
@@ -34,11 +45,17 @@ pub struct PoseSetPointJudge<'m> {
     machine: &'m dyn MachineKinematics,
     axes: Vec<Axis>,
     rounding: Vec<f64>,
-    legs: Vec<Expected>,
-    current: usize,
-    rows: VecDeque<(f64, AxisVector)>,
-    last: Option<ToolPose>,
-    before_last: Option<ToolPose>,
+    /// Moves of the path, and the pose at its end, where it ends with a move of the tool.
+    moves: u32,
+    end: Option<ToolPose>,
+    place: Place,
+    tip: Track,
+    tool: Track,
+    rows: VecDeque<Sighting>,
+    /// The row that waits for the next one, the one before, and how the tool bends there.
+    held: Option<Row>,
+    before: Option<Row>,
+    bends: [Vector<3>; 2],
     start: f64,
     report: PoseReport,
 }
@@ -46,7 +63,7 @@ pub struct PoseSetPointJudge<'m> {
 impl std::fmt::Debug for PoseSetPointJudge<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("PoseSetPointJudge")
-            .field("current", &self.current)
+            .field("place", &self.place())
             .field("report", &self.report)
             .finish_non_exhaustive()
     }
@@ -72,11 +89,15 @@ impl<'m> PoseSetPointJudge<'m> {
             machine,
             axes,
             rounding: rounding.to_vec(),
-            legs: Vec::new(),
-            current: 0,
+            moves: 0,
+            end: None,
+            place: Place::default(),
+            tip: Track::default(),
+            tool: Track::default(),
             rows: VecDeque::with_capacity(4),
-            last: None,
-            before_last: None,
+            held: None,
+            before: None,
+            bends: [Vector::zeros(); 2],
             start: 0.0,
             report: PoseReport::new(peaks),
         }
@@ -86,13 +107,18 @@ impl<'m> PoseSetPointJudge<'m> {
     pub fn expect(&mut self, leg: &PoseLeg) {
         self.report.path_length += leg.length();
         self.report.path_angle += leg.angle();
-        let mv = u32::try_from(self.legs.len()).unwrap_or(u32::MAX);
-        self.legs.push(Expected {
-            leg: leg.clone(),
-            place: Place { mv, line: leg.line },
-            tip: f64::INFINITY,
-            orientation: f64::INFINITY,
-        });
+        let place = Place {
+            mv: self.moves,
+            line: leg.line,
+        };
+        self.moves = self.moves.saturating_add(1);
+        self.end = match &leg.path {
+            PosePath::Tool { tip, turn } => ToolPose::new(tip[1], turn.end()).ok(),
+            _ => None,
+        };
+        self.place = place;
+        add(&mut self.tip.parts, Followed::Tip, leg, place);
+        add(&mut self.tool.parts, Followed::Tool, leg, place);
     }
 
     /// Judges the next row.
@@ -100,12 +126,12 @@ impl<'m> PoseSetPointJudge<'m> {
     /// # Errors
     /// [`VerifyError::Time`] for a time that does not come after the one before.
     pub fn observe(&mut self, time: f64, at: &AxisVector) -> Result<(), VerifyError> {
-        if let Some((before, _)) = self.rows.back() {
-            if !(time > *before && time.is_finite()) {
+        if let Some(before) = self.rows.back() {
+            if !(time > before.time && time.is_finite()) {
                 return Err(VerifyError::Time {
                     index: self.report.observed,
                     time,
-                    before: *before,
+                    before: before.time,
                 });
             }
         } else {
@@ -117,9 +143,15 @@ impl<'m> PoseSetPointJudge<'m> {
         if self.rows.len() == 4 {
             self.rows.pop_front();
         }
-        self.rows.push_back((time, *at));
+        let pose = self.machine.forward(at);
+        self.rows.push_back(Sighting {
+            time,
+            axes: *at,
+            wobble: pose.as_ref().map_or(0.0, |pose| self.wobble(pose)),
+            lever: pose.as_ref().map_or(0.0, |pose| pose.tip().norm()) + LEVER,
+        });
         self.judge_axes(place);
-        match self.machine.forward(at) {
+        match pose {
             Ok(pose) => self.judge_pose(time, &pose, at),
             Err(reason) => self.report.add(PoseViolation::Unreachable {
                 reason: reason.to_string(),
@@ -133,79 +165,103 @@ impl<'m> PoseSetPointJudge<'m> {
     /// The report, once all rows were seen.
     #[must_use]
     pub fn finish(mut self) -> PoseReport {
-        self.report.moves = u32::try_from(self.legs.len()).unwrap_or(u32::MAX);
-        if let (Some(pose), Some(last)) = (self.last, self.legs.last())
-            && let PosePath::Tool { tip, turn } = &last.leg.path
-        {
-            let slack = self.slack(&pose);
-            let there = (pose.tip() - tip[1]).norm() <= slack.0 + MEETING_SLACK
-                && angle_between(&pose.orientation(), &turn.end()) <= slack.1 + MEETING_SLACK;
-            if !there {
-                let place = last.place;
-                self.report.add(PoseViolation::StopNotMade { place });
+        self.report.moves = self.moves;
+        if let Some(last) = self.held {
+            self.follow(&last, [Vector::zeros(); 2]);
+            if let Some(end) = self.end {
+                let [tip, tool] = last.slack;
+                let there = (last.pose.tip() - end.tip()).norm() <= tip + MEETING_SLACK
+                    && angle_between(&last.pose.orientation(), &end.orientation())
+                        <= tool + MEETING_SLACK;
+                if !there {
+                    let place = self.place;
+                    self.report.add(PoseViolation::StopNotMade { place });
+                }
             }
         }
-        let legs = std::mem::take(&mut self.legs);
-        for (index, expected) in legs.iter().enumerate() {
-            if !matches!(expected.leg.path, PosePath::Tool { .. }) {
-                continue;
-            }
-            let next = legs.get(index + 1).unwrap_or(expected);
-            self.close_corner(expected, &next.leg);
+        for followed in [Followed::Tip, Followed::Tool] {
+            self.tell(followed);
         }
         self.report
     }
 
-    /// Says how near the end of a leg was passed, and whether it was near enough for it and the leg behind.
-    fn close_corner(&mut self, expected: &Expected, next: &PoseLeg) {
-        let (leg, place) = (&expected.leg, expected.place);
-        let tip = leg.tip_tolerance.length().min(next.tip_tolerance.length());
-        let turn = leg
-            .orientation_tolerance
-            .angle()
-            .min(next.orientation_tolerance.angle());
-        let peak = |value: f64| Peak {
-            value,
-            time: 0.0,
-            place,
+    /// Reports what was found of the tip or of the tool.
+    fn tell(&mut self, followed: Followed) {
+        let (track, report) = match followed {
+            Followed::Tip => (&mut self.tip, &mut self.report),
+            Followed::Tool => (&mut self.tool, &mut self.report),
         };
-        if expected.tip / tip > self.report.tip_corner_ratio.value {
-            self.report.tip_corner_ratio = peak(expected.tip / tip);
-            self.report.tip_corner = peak(expected.tip);
+        let found = track.finish();
+        let (share, away) = (track.share, track.away);
+        if followed == Followed::Tip {
+            report.raise_tip(share.value, away.value, away.time, away.place);
+            (report.tip_corner_ratio, report.tip_corner) = (found.corner_share, found.corner);
+        } else {
+            report.raise_orientation(share.value, away.value, away.time, away.place);
+            report.orientation_corner_ratio = found.corner_share;
+            report.orientation_corner = found.corner;
         }
-        if expected.orientation / turn > self.report.orientation_corner_ratio.value {
-            self.report.orientation_corner_ratio = peak(expected.orientation / turn);
-            self.report.orientation_corner = peak(expected.orientation);
-        }
-        if expected.tip > tip * (1.0 + FOUND_SLACK) {
-            self.report.add(PoseViolation::TipCorner {
-                value: expected.tip,
-                tolerance: tip,
-                place,
-            });
-        }
-        if expected.orientation > turn * (1.0 + FOUND_SLACK) {
-            self.report.add(PoseViolation::OrientationCorner {
-                value: expected.orientation,
-                tolerance: turn,
-                place,
+        report.violations += found.more;
+        for outside in found.outside {
+            let part = &track.parts[outside.part];
+            let (value, time, place) = (outside.value, outside.time, part.place);
+            let tolerance = if outside.at_end {
+                part.at_end
+            } else {
+                part.tolerance
+            };
+            // Straight moves of axes are followed with the tip and with the tool, and told once.
+            if part.is_of_axes() && followed == Followed::Tool {
+                continue;
+            }
+            report.add(match (&part.way, outside.at_end) {
+                (Way::Axes(_), _) => PoseViolation::AxesDeviation { value, time, place },
+                (Way::Line(_), false) => PoseViolation::TipDeviation {
+                    value,
+                    tolerance,
+                    time,
+                    place,
+                },
+                (Way::Line(_), true) => PoseViolation::TipCorner {
+                    value,
+                    tolerance,
+                    place,
+                },
+                (Way::Arc(_), false) => PoseViolation::OrientationDeviation {
+                    value,
+                    tolerance,
+                    time,
+                    place,
+                },
+                (Way::Arc(_), true) => PoseViolation::OrientationCorner {
+                    value,
+                    tolerance,
+                    place,
+                },
             });
         }
     }
 
     fn place(&self) -> Place {
-        self.legs
-            .get(self.current)
-            .map_or(Place::default(), |expected| expected.place)
+        self.tip.place().unwrap_or_default()
+    }
+
+    /// What rounding of an orientation may do to an axis: beside a pole of the machine it turns by the more the
+    /// nearer the tool is to the pole.
+    fn wobble(&self, pose: &ToolPose) -> f64 {
+        let tool = pose.orientation();
+        self.machine.pole(&tool).map_or(0.0, |pole| {
+            ORIENTATION_ROUNDING / angle_between(&pole, &tool).max(ORIENTATION_ROUNDING)
+        })
     }
 
     /// What rounding of the axes may do to the tip and to the orientation.
-    fn slack(&self, pose: &ToolPose) -> (f64, f64) {
+    fn slack(&self, pose: &ToolPose) -> [f64; 2] {
         let rounding = self
             .rounding
             .iter()
             .fold(0.0, |most: f64, one| most.max(*one));
         let angle = 3.0 * rounding;
-        (angle * (1.0 + pose.tip().norm() + LEVER), angle)
+        [angle * (1.0 + pose.tip().norm() + LEVER), angle]
     }
 }
