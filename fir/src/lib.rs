@@ -21,6 +21,7 @@ mod merge;
 mod mode;
 mod planner;
 mod pulse;
+mod queue;
 mod resonator;
 mod settings;
 mod sweep;

@@ -7,6 +7,7 @@
 
 use crate::command::{Command, TimedPulse};
 use crate::cubic::CubicChain;
+use crate::queue::Queue;
 use crate::taps::{SAME_INSTANT, Taps};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Piece, Sample, Serves, Vector};
@@ -44,7 +45,7 @@ pub(crate) struct Sweep<const N: usize> {
     chain: CubicChain,
     commands: VecDeque<Command<N>>,
     taps: Taps<N>,
-    active: VecDeque<Active<N>>,
+    active: Queue<Active<N>>,
     /// How many of the active pulses have begun.
     begun: usize,
     state: Sample<N>,
@@ -62,7 +63,7 @@ impl<const N: usize> Sweep<N> {
             taps: Taps::new(&chain, 2 * capacity),
             chain,
             commands: VecDeque::with_capacity(capacity),
-            active: VecDeque::with_capacity(capacity),
+            active: Queue::with_capacity(capacity),
             begun: 0,
             state: Sample::at_rest(start),
             time: 0.0,
@@ -103,7 +104,7 @@ impl<const N: usize> Sweep<N> {
             match command {
                 Command::Pulse(pulse) => self.begin(&pulse),
                 Command::Rest => {
-                    if self.active.is_empty() {
+                    if self.active.items().is_empty() {
                         continue;
                     }
                     self.resting = true;
@@ -142,7 +143,7 @@ impl<const N: usize> Sweep<N> {
         let begin = self.commanded;
         self.commanded += pulse.duration;
         self.taps.push(begin, velocity);
-        self.active.push_back(Active {
+        self.active.push(Active {
             begin,
             end: self.commanded,
             from: pulse.from,
@@ -203,7 +204,7 @@ impl<const N: usize> Sweep<N> {
 
     /// Rests at the end of the last pulse, exactly.
     fn land(&mut self) {
-        if let Some(last) = self.active.back() {
+        if let Some(last) = self.active.items().last() {
             self.state = Sample::at_rest(last.to);
             self.active.clear();
             self.begun = 0;
@@ -212,15 +213,20 @@ impl<const N: usize> Sweep<N> {
 
     /// The pulses that shape the motion now.
     fn serves(&mut self) -> Serves {
-        while let Some(next) = self.active.get(self.begun)
+        while let Some(next) = self.active.items().get(self.begun)
             && next.begin <= self.time + SAME_INSTANT
         {
             self.begun += 1;
         }
         let none = Serves { first: 0, last: 0 };
-        let first = self.active.front().map_or(none, |pulse| pulse.serves);
+        let first = self
+            .active
+            .items()
+            .first()
+            .map_or(none, |pulse| pulse.serves);
         let last = self
             .active
+            .items()
             .get(self.begun.saturating_sub(1))
             .map_or(first, |pulse| pulse.serves);
         Serves {
@@ -232,7 +238,7 @@ impl<const N: usize> Sweep<N> {
     /// Drops the pulses whose effect is over; the last one to go leaves its end behind.
     fn expire(&mut self) {
         let total = self.chain.total();
-        while let Some(oldest) = self.active.front()
+        while let Some(oldest) = self.active.items().first()
             && oldest.end + total <= self.time + SAME_INSTANT
         {
             if self.active.len() == 1 {
@@ -242,7 +248,7 @@ impl<const N: usize> Sweep<N> {
                     ..Sample::at_rest(oldest.to)
                 };
             }
-            self.active.pop_front();
+            self.active.drop_oldest(1);
             self.begun = self.begun.saturating_sub(1);
         }
     }
@@ -252,11 +258,12 @@ impl<const N: usize> Sweep<N> {
         self.since_anchor = 0;
         let mut position = self
             .active
-            .front()
+            .items()
+            .first()
             .map_or(self.state.position, |oldest| oldest.from);
         let mut velocity = Vector::zeros();
         let mut acceleration = Vector::zeros();
-        for pulse in &self.active {
+        for pulse in self.active.items() {
             let (since, after) = (self.time - pulse.begin, self.time - pulse.end);
             if since <= 0.0 {
                 break;
@@ -302,7 +309,7 @@ impl<const N: usize> Sweep<N> {
         self.time -= span;
         self.commanded -= span;
         self.taps.set_back(span);
-        for pulse in &mut self.active {
+        for pulse in self.active.items_mut() {
             pulse.begin -= span;
             pulse.end -= span;
         }

@@ -4,7 +4,7 @@
 //! repeats them. Not here: what the jerk is integrated to.
 
 use crate::cubic::CubicChain;
-use std::collections::VecDeque;
+use crate::queue::Queue;
 use toolglide_kinematics::Vector;
 
 /// Instants nearer than this are one, s: far below any period and above the rounding of times of some
@@ -42,7 +42,7 @@ struct Tap<const N: usize> {
 pub(crate) struct Taps<const N: usize> {
     /// The last one has the longest delay.
     taps: Vec<Tap<N>>,
-    steps: VecDeque<Step<N>>,
+    steps: Queue<Step<N>>,
     /// When the next step arrives at any tap; never while none is known.
     due: f64,
     jerk: Vector<N>,
@@ -54,7 +54,7 @@ impl<const N: usize> Taps<N> {
     pub(crate) fn new(chain: &CubicChain, capacity: usize) -> Self {
         Self {
             taps: Vec::with_capacity(FEW * chain.comb().len()),
-            steps: VecDeque::with_capacity(capacity),
+            steps: Queue::with_capacity(capacity),
             due: f64::INFINITY,
             jerk: Vector::zeros(),
             knots_since_sum: 0,
@@ -90,7 +90,7 @@ impl<const N: usize> Taps<N> {
     /// The commanded velocity changes.
     pub(crate) fn push(&mut self, time: f64, velocity: Vector<N>) {
         let index = self.steps.len();
-        self.steps.push_back(Step { time, velocity });
+        self.steps.push(Step { time, velocity });
         for tap in &mut self.taps {
             if tap.next == index {
                 tap.due = time + tap.delay;
@@ -110,13 +110,14 @@ impl<const N: usize> Taps<N> {
         let mut ahead = Vector::zeros();
         // Few taps are summed, of many only what changes.
         let few = self.taps.len() <= FEW;
+        let steps = self.steps.items();
         let mut jerk = if few { Vector::zeros() } else { self.jerk };
         let mut soonest = f64::INFINITY;
         for tap in &mut self.taps {
             while tap.due <= knot + SAME_INSTANT {
                 // Instants that are one are not quite the same: what the jerk does too early.
                 let early = tap.due - knot;
-                let held = self.steps[tap.next].velocity * tap.weight;
+                let held = steps[tap.next].velocity * tap.weight;
                 let change = held - tap.held;
                 ahead += change * early;
                 if !few {
@@ -124,7 +125,7 @@ impl<const N: usize> Taps<N> {
                 }
                 tap.held = held;
                 tap.next += 1;
-                let next = self.steps.get(tap.next);
+                let next = steps.get(tap.next);
                 tap.due = next.map_or(f64::INFINITY, |step| step.time + tap.delay);
             }
             if few {
@@ -141,9 +142,7 @@ impl<const N: usize> Taps<N> {
         // What has passed the longest delay has passed all.
         let oldest = self.taps.last().map_or(0, |tap| tap.next);
         if oldest > 0 {
-            for _ in 0..oldest {
-                self.steps.pop_front();
-            }
+            self.steps.drop_oldest(oldest);
             for tap in &mut self.taps {
                 tap.next -= oldest;
             }
@@ -159,13 +158,13 @@ impl<const N: usize> Taps<N> {
 
     /// Sets the clock back.
     pub(crate) fn set_back(&mut self, span: f64) {
-        for step in &mut self.steps {
+        for step in self.steps.items_mut() {
             step.time -= span;
         }
         self.due = f64::INFINITY;
         for tap in &mut self.taps {
             // Found afresh, as exactly as the clock is now.
-            let next = self.steps.get(tap.next);
+            let next = self.steps.items().get(tap.next);
             tap.due = next.map_or(f64::INFINITY, |step| step.time + tap.delay);
             self.due = self.due.min(tap.due);
         }
