@@ -12,16 +12,17 @@ use crate::taps::{SAME_INSTANT, Taps};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Piece, Sample, Serves, Vector};
 
-/// Knots of each tap after which the state is computed afresh: rounding of so many steps is far below what
-/// the judge can see.
-const KNOTS_TO_ANCHOR: usize = 8;
+/// Knots after which the state is computed afresh, without a comb and with one: rounding of so many steps is
+/// far below what the judge can see.
+const KNOTS_TO_ANCHOR: u32 = 32;
+const TEETH_TO_ANCHOR: u32 = 128;
 
 /// Pieces longer than this share of the delay of the chain start from a state computed afresh,
 /// because time squared makes the rounding of the acceleration a length.
 const LONG_PIECE: f64 = 0.5;
 
-/// The same for pieces longer than so many times the shorter filter, whose jerk makes the rounding of
-/// knots an acceleration.
+/// The same where so many times the shorter filter, whose jerk makes the rounding of knots an acceleration,
+/// would be over since then.
 const LONG_BESIDE_SHORT: f64 = 100.0;
 
 /// Time after which the clock is set back by a multiple of it, s: a power of two, so that subtracting
@@ -53,7 +54,9 @@ pub(crate) struct Sweep<const N: usize> {
     /// End of the last pulse commanded.
     commanded: f64,
     resting: bool,
-    since_anchor: usize,
+    since_anchor: u32,
+    /// When the state was computed afresh last.
+    anchored: f64,
 }
 
 impl<const N: usize> Sweep<N> {
@@ -70,6 +73,7 @@ impl<const N: usize> Sweep<N> {
             commanded: 0.0,
             resting: false,
             since_anchor: 0,
+            anchored: 0.0,
         };
         sweep.restart(start);
         sweep
@@ -160,6 +164,7 @@ impl<const N: usize> Sweep<N> {
         self.commanded = 0.0;
         self.resting = false;
         self.since_anchor = 0;
+        self.anchored = 0.0;
         self.begun = 0;
         self.active.clear();
         self.taps.restart(&self.chain);
@@ -191,12 +196,16 @@ impl<const N: usize> Sweep<N> {
         self.state.acceleration -= early;
         self.state.jerk = jerk;
         let next = self.taps.next_knot();
+        let knots = match self.taps.are_few() {
+            true => KNOTS_TO_ANCHOR,
+            false => TEETH_TO_ANCHOR,
+        };
         let lasts = next.min(self.horizon()) - self.time;
         if self.resting && next.is_infinite() {
             self.land();
-        } else if self.since_anchor >= KNOTS_TO_ANCHOR * self.taps.count()
+        } else if self.since_anchor >= knots
             || lasts > LONG_PIECE * self.chain.total()
-            || lasts > LONG_BESIDE_SHORT * self.chain.short()
+            || lasts + self.time - self.anchored > LONG_BESIDE_SHORT * self.chain.short()
         {
             self.anchor();
         }
@@ -256,6 +265,7 @@ impl<const N: usize> Sweep<N> {
     /// The state from the closed form.
     fn anchor(&mut self) {
         self.since_anchor = 0;
+        self.anchored = self.time;
         let mut position = self
             .active
             .items()
@@ -276,6 +286,7 @@ impl<const N: usize> Sweep<N> {
         self.state.position = position;
         self.state.velocity = velocity;
         self.state.acceleration = acceleration;
+        self.state.jerk = self.taps.sum();
     }
 
     /// Position, velocity and acceleration some time after a unit step: exactly those before it and those
@@ -307,6 +318,7 @@ impl<const N: usize> Sweep<N> {
         }
         let span = (time / CLOCK_SPAN).floor() * CLOCK_SPAN;
         self.time -= span;
+        self.anchored -= span;
         self.commanded -= span;
         self.taps.set_back(span);
         for pulse in self.active.items_mut() {

@@ -14,9 +14,6 @@ pub(crate) const SAME_INSTANT: f64 = 1e-12;
 /// Taps of a chain without a comb.
 const FEW: usize = 4;
 
-/// Knots after which the jerk of more taps is summed afresh.
-const KNOTS_TO_SUM: u32 = 32;
-
 /// A change of the commanded velocity.
 #[derive(Clone, Copy, Debug)]
 struct Step<const N: usize> {
@@ -46,7 +43,6 @@ pub(crate) struct Taps<const N: usize> {
     /// When the next step arrives at any tap; never while none is known.
     due: f64,
     jerk: Vector<N>,
-    knots_since_sum: u32,
 }
 
 impl<const N: usize> Taps<N> {
@@ -57,7 +53,6 @@ impl<const N: usize> Taps<N> {
             steps: Queue::with_capacity(capacity),
             due: f64::INFINITY,
             jerk: Vector::zeros(),
-            knots_since_sum: 0,
         }
     }
 
@@ -82,9 +77,9 @@ impl<const N: usize> Taps<N> {
         }
     }
 
-    /// How many there are.
-    pub(crate) fn count(&self) -> usize {
-        self.taps.len()
+    /// Whether there is no comb.
+    pub(crate) fn are_few(&self) -> bool {
+        self.taps.len() <= FEW
     }
 
     /// The commanded velocity changes.
@@ -109,7 +104,7 @@ impl<const N: usize> Taps<N> {
     pub(crate) fn arrive(&mut self, knot: f64) -> (Vector<N>, Vector<N>) {
         let mut ahead = Vector::zeros();
         // Few taps are summed, of many only what changes.
-        let few = self.taps.len() <= FEW;
+        let few = self.are_few();
         let steps = self.steps.items();
         let mut jerk = if few { Vector::zeros() } else { self.jerk };
         let mut soonest = f64::INFINITY;
@@ -135,10 +130,6 @@ impl<const N: usize> Taps<N> {
         }
         self.due = soonest;
         self.jerk = jerk;
-        self.knots_since_sum += 1;
-        if !few && self.knots_since_sum >= KNOTS_TO_SUM {
-            self.sum();
-        }
         // What has passed the longest delay has passed all.
         let oldest = self.taps.last().map_or(0, |tap| tap.next);
         if oldest > 0 {
@@ -150,10 +141,10 @@ impl<const N: usize> Taps<N> {
         (self.jerk, ahead)
     }
 
-    /// The jerk from what every tap holds.
-    fn sum(&mut self) {
-        self.knots_since_sum = 0;
+    /// The jerk from what every tap holds, exactly none where they hold the same.
+    pub(crate) fn sum(&mut self) -> Vector<N> {
         self.jerk = self.taps.iter().map(|tap| tap.held).sum();
+        self.jerk
     }
 
     /// Sets the clock back.

@@ -245,3 +245,15 @@ fn a_slow_move_behind_a_fast_one_takes_no_longer_without_a_stop_than_with_one() 
 ] };
     holds(&course, &[[22.258084371955018, 159.9008382310336, 36257.0661330523]; 2]);
 }
+
+/// What is left of the jerk of many taps by rounding becomes a length in time.
+#[test]
+#[rustfmt::skip]
+fn slow_moves_behind_three_filters_leave_no_jump() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(Lead::Line([30.0, 1.0]), 0.05, 0.001),
+    go(Lead::Line([31.0, 7.0]), 90.0, 0.001),
+    go(Lead::Line([3.0, 7.5]), 0.07, 0.001),
+] };
+    holds(&course, &[[500.0, 2500.0, 15000.0]; 2]);
+}
