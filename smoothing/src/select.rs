@@ -37,7 +37,9 @@ impl<const N: usize> Selection<N> {
     pub(crate) fn of(settings: &Settings<N>) -> Vec<Self> {
         let kinds: &[Kind] = match settings.method {
             // Between its stops, an exact stop has only the chords of an arc to turn.
-            Method::Kcs | Method::ExactStop => &[Kind::Fastest, Kind::Interrupted],
+            Method::Kcs | Method::ExactStop => {
+                &[Kind::Fastest, Kind::Interrupted, Kind::Uninterrupted]
+            }
             Method::KcsInterrupted => &[Kind::Interrupted],
             Method::KcsUninterrupted | Method::KcsLocal | Method::KcsGlobal => {
                 &[Kind::Uninterrupted]

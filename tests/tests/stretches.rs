@@ -203,3 +203,25 @@ fn fine_moves_that_stray_less_than_the_tolerance_take_what_a_straight_line_takes
     let most = 1.001 * straight.duration();
     assert!(fine.duration() < most, "{} s", fine.duration());
 }
+
+#[test]
+fn a_circle_goes_on_at_speed_where_the_curve_is_found_a_little_slower_again() {
+    // Coordinates rounded to a ten-thousandth of an inch, and more moves than are planned at once.
+    const RADIUS: f64 = 25.4;
+    let rounded = |value: f64| (value / 2.54e-3).round() * 2.54e-3;
+    let points: Vec<_> = (0..10_000_u32)
+        .map(|chord| {
+            let at = std::f64::consts::TAU * f64::from(chord) / 10_000.0;
+            [rounded(RADIUS * at.sin()), rounded(RADIUS * at.cos())]
+        })
+        .collect();
+    let limits = limits(&[[500.0, 2_500.0, 2e5]; 2]);
+    let course = Course::of_lines([0.0, 0.0], &points, 4_000.0, 0.1);
+    let path = course.toolpath();
+    let motion = plan(&path, &Settings::new(limits)).unwrap();
+    let report = verify(&motion, &path, &limits);
+    assert!(report.passes(), "{:#?}", report.examples);
+    // Only the corner of the first move and the end are at rest.
+    let least = least_speed(&motion, 0.5, motion.duration() - 0.2);
+    assert!(least > 150.0, "{least} mm/s");
+}

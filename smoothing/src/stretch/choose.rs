@@ -80,8 +80,12 @@ impl<const N: usize> Stretches<N> {
         if !self.corners.has_begun() {
             return choice;
         }
+        let certain = certain && matches!(choice, Choice::Corners(_));
+        if certain && self.is_clean(legs) {
+            return Choice::Corners(Material::Vertices);
+        }
         let (going_on, material) = self.going_on(legs);
-        if certain && matches!(choice, Choice::Corners(_)) {
+        if certain {
             return Choice::Corners(material);
         }
         self.trial.follow(&self.corners);

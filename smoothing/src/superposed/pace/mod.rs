@@ -244,8 +244,21 @@ impl Pace {
         self.holds.len() > before
     }
 
-    /// Plans the speeds at which the progress is held.
+    /// Plans the speeds at which the progress is held. What was settled may be faster than the first holds
+    /// are found to allow; those to which it cannot brake are passed without holding.
     fn link(&mut self) {
+        for passed in 0..=self.holds.len() {
+            self.link_after(passed);
+            let to = self.turns.first().map_or(0.0, |turn| turn.exit.speed);
+            let sets_out = |link| Self::feed(link, self.start.speed, to).is_some();
+            if self.links.first().is_none_or(sets_out) {
+                break;
+            }
+        }
+    }
+
+    /// The same for the holds after some.
+    fn link_after(&mut self, passed: usize) {
         self.links.clear();
         self.turns.clear();
         if self.start.speed > 0.0 {
@@ -256,7 +269,8 @@ impl Pace {
         }
         let mut first = 0;
         let mut start = self.start.distance;
-        let ends = self.holds.iter().copied().chain([self.places.len()]);
+        let holds = self.holds[passed..].iter().copied();
+        let ends = holds.chain([self.places.len()]);
         for end in ends {
             let group = &self.places[first..end];
             let (Some(one), Some(last)) = (group.first(), group.last()) else {
