@@ -300,7 +300,12 @@ impl<const N: usize> Sweep<N> {
             return [since - 0.5 * total, 1.0, 0.0];
         }
         let (position, velocity) = self.chain.response(since);
-        [position, velocity, self.chain.acceleration(since)]
+        // So is where a ramp of the acceleration begins or ends.
+        let (long, short) = (self.chain.long(), self.chain.short());
+        let at = |knot: f64| (since - knot).abs() <= SAME_INSTANT;
+        let level = self.taps.are_few() && (at(short) || at(long));
+        let instant = if level { 0.5 * total } else { since };
+        [position, velocity, self.chain.acceleration(instant)]
     }
 
     /// What comes next must not be told in the digits that are left of the time of a long pulse; while

@@ -257,3 +257,19 @@ fn slow_moves_behind_three_filters_leave_no_jump() {
 ] };
     holds(&course, &[[500.0, 2500.0, 15000.0]; 2]);
 }
+
+/// Rounding of the time at which a short ramp of the acceleration ended became a length in the long one after it.
+#[test]
+#[rustfmt::skip]
+fn an_axis_that_is_a_thousand_times_slower_to_start_leaves_no_jump() {
+    let course = Course { start: [0.0, 0.0, 0.0], legs: vec![
+    go(Lead::Line([-89.828850681, 89.828850681, -89.828850681]), 142.67489833333333, 0.158843),
+    go(Lead::Line([0.0, 0.0, 0.0]), 142.67489833333333, 0.158843),
+    go(Lead::Line([-300.0, 0.0, -300.0]), 142.67489833333333, 0.158843),
+    go(Lead::Line([-600.0, -300.0, 0.0]), 142.67489833333333, 0.158843),
+    go(Lead::Line([-900.0, -600.0, -300.0]), 142.67489833333333, 0.158843),
+    go(Lead::Line([-1200.0, -900.0, -600.0]), 142.67489833333333, 0.158843),
+    go(Lead::Line([-1200.0, -900.0, -300.0]), 142.67489833333333, 0.158843),
+] };
+    holds(&course, &[[2730.12, 2927.2, 200000.0], [2730.12, 22855.5, 200000.0], [2730.12, 5.88579, 200000.0]]);
+}
