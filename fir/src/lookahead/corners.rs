@@ -172,13 +172,10 @@ impl<const N: usize> LookAhead<N> {
             let pulse = &self.pulses[corner];
             // In the middle of an arc its own feedrate is right.
             let reach = pulse.feed * half;
-            let within = [self.behind[corner], self.ahead[corner]]
-                .into_iter()
-                .filter(|end| end.distance < reach);
-            let (ends, meets_arc) = within.fold((0, false), |(ends, meets), end| {
-                (ends + 1, meets || end.meets_arc)
-            });
-            if pulse.pass && pulse.turn > 0.0 && ends > 0 {
+            let near = |end: RunEnd| end.distance < reach;
+            let (behind, ahead) = (self.behind[corner], self.ahead[corner]);
+            if pulse.pass && pulse.turn > 0.0 && (near(behind) || near(ahead)) {
+                let meets_arc = near(behind) && behind.meets_arc || near(ahead) && ahead.meets_arc;
                 let feed = self.passing_feed(corner, meets_arc);
                 self.slower[corner] = if self.capped || self.pulses[corner].smooth {
                     feed
