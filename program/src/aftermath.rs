@@ -14,6 +14,7 @@ const MOST_TEXT: usize = 16 * 1024;
 /// What refused lines may have left undone.
 #[derive(Debug, Default)]
 pub(crate) struct Aftermath {
+    any: bool,
     feedrate: bool,
     code: bool,
     /// Whether the tool may not be where the reader believes it to be.
@@ -25,6 +26,7 @@ pub(crate) struct Aftermath {
 impl Aftermath {
     /// Remembers a refused line; `arrived` says that its end was taken all the same.
     pub(crate) fn take(&mut self, line: &[u8], arrived: bool) {
+        self.any = true;
         let has = |letters: &[u8]| line.iter().any(|byte| letters.contains(byte));
         self.feedrate |= has(b"Ff");
         self.code |= has(b"Gg");
@@ -41,6 +43,10 @@ impl Aftermath {
     /// somewhere else before.
     pub(crate) fn explains(&self, reason: &Reason, lost: bool) -> bool {
         match reason {
+            // A line that would have ended the loop may be among them.
+            Reason::Flow(
+                FlowError::Endless | FlowError::NoMotion { .. } | FlowError::TooManySteps { .. },
+            ) => self.any,
             Reason::NoFeedrate => self.feedrate || self.code,
             Reason::NoInverseTime | Reason::NoMotionMode { .. } => self.code,
             Reason::Arithmetic(ArithmeticError::NeverSet { name }) => self.names(name),
@@ -78,12 +84,15 @@ mod tests {
             !aftermath.explains(&Reason::NoFeedrate, false),
             "nothing yet"
         );
+        let endless = Reason::Flow(FlowError::Endless);
+        assert!(!aftermath.explains(&endless, false), "endless by itself");
         aftermath.take(b"#<Deep> = [1 +", true);
         let never = |name: &str| {
             let name = name.into();
             Reason::Arithmetic(ArithmeticError::NeverSet { name })
         };
         assert!(aftermath.explains(&never("deep"), false), "its name");
+        assert!(aftermath.explains(&endless, false), "its end");
         assert!(!aftermath.explains(&never("wide"), false), "another name");
         assert!(!aftermath.explains(&Reason::NoFeedrate, false), "no F");
         aftermath.take(b"X1 F100 ~", false);

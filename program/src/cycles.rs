@@ -87,7 +87,7 @@ impl Lowering {
             clear,
             feedrate,
         };
-        let repetitions = whole(block, b'L', "repetitions", 0, MOST_MOVES)?.unwrap_or(1);
+        let repetitions = whole(block, b'L', "number of repetitions", 0, MOST_MOVES)?.unwrap_or(1);
         let first = moves.len();
         let mut outcome = self.raise(&hole, moves);
         let mut center = self.program;

@@ -4,12 +4,14 @@
 //! here: what an O word does, see `branch`.
 
 use crate::control::{Control, Keyword, Label};
+use crate::endless::Watch;
 use crate::error::Fault;
 use crate::flow_error::FlowError;
 use crate::lines::Lines;
 use crate::place::{Place, Span};
 use crate::reason::Reason;
 use crate::recording::Recording;
+use crate::settings::Settings;
 use crate::subprograms::Rest;
 use crate::tape::Tape;
 use std::collections::BTreeMap;
@@ -17,7 +19,7 @@ use std::io::BufRead;
 use std::sync::Arc;
 
 /// A block that is running.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Open {
     pub(crate) label: Label,
     /// `If`, `While`, `Do` or `Repeat`.
@@ -29,7 +31,7 @@ pub(crate) struct Open {
 }
 
 /// A recording that is running.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Frame {
     pub(crate) recording: Arc<Recording>,
     /// Index of the line that is next, and of the one behind the last.
@@ -40,7 +42,7 @@ pub(crate) struct Frame {
 }
 
 /// What called the lines that run.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Call {
     /// Nothing: a loop, or the program itself.
     None,
@@ -66,14 +68,13 @@ pub(crate) struct Flow<R> {
     pub(crate) open: Vec<Open>,
     pub(crate) subroutines: BTreeMap<Label, Arc<Recording>>,
     pub(crate) find: Option<Find>,
-    pub(crate) most_steps: u64,
     /// All lines, where the language jumps between them.
     pub(crate) tape: Option<Tape>,
     /// The rest of the file, once a subprogram was called.
     pub(crate) rest: Option<Rest>,
     /// The line being run, if it is not the one of the file.
     pub(crate) current: Option<(Arc<Recording>, usize)>,
-    steps: u64,
+    pub(crate) watch: Watch,
 }
 
 impl<R> std::fmt::Debug for Flow<R> {
@@ -81,13 +82,12 @@ impl<R> std::fmt::Debug for Flow<R> {
         out.debug_struct("Flow")
             .field("file", &self.file)
             .field("frames", &self.frames)
-            .field("steps", &self.steps)
             .finish_non_exhaustive()
     }
 }
 
 impl<R: BufRead> Flow<R> {
-    pub(crate) fn new(reader: R, file: &str, most_steps: u64) -> Self {
+    pub(crate) fn new(reader: R, file: &str, settings: &Settings) -> Self {
         Self {
             file: Arc::from(file),
             lines: Lines::new(reader),
@@ -95,11 +95,10 @@ impl<R: BufRead> Flow<R> {
             open: Vec::new(),
             subroutines: BTreeMap::new(),
             find: None,
-            most_steps,
             tape: None,
             rest: None,
             current: None,
-            steps: 0,
+            watch: Watch::new(settings),
         }
     }
 
@@ -201,12 +200,8 @@ impl<R: BufRead> Flow<R> {
 
     /// Counts a line that is run again.
     pub(crate) fn step(&mut self) -> Result<(), Reason> {
-        self.steps += 1;
-        if self.steps > self.most_steps {
-            let bound = self.most_steps;
-            return Err(FlowError::TooManySteps { bound }.into());
-        }
-        Ok(())
+        let length = self.text().len();
+        Ok(self.watch.step(length)?)
     }
 
     /// Blocks that are open where the program is.

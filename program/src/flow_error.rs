@@ -130,6 +130,19 @@ pub enum FlowError {
         /// Most lines.
         bound: u64,
     },
+    /// A loop that does nothing but count, or waits for what never comes.
+    #[error(
+        "more than {bound} lines of loops and subroutines were run without a move; is this loop endless?"
+    )]
+    NoMotion {
+        /// Most lines without a move.
+        bound: u64,
+    },
+    /// A loop that comes round with nothing changed.
+    #[error(
+        "this line is run again with nothing changed since the last time: the loop around it has no end"
+    )]
+    Endless,
     /// A subroutine or a loop longer than may be remembered.
     #[error("a loop or a subroutine is longer than {bound} bytes")]
     TooLong {

@@ -35,7 +35,7 @@ pub(crate) trait Values {
 }
 
 /// The parameters that a program has set.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Parameters {
     /// By their number, as far as one was set.
     numbered: Vec<f64>,

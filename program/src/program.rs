@@ -58,7 +58,7 @@ impl<R: BufRead> Program<R> {
     /// A program read from `reader`; messages call it `file`.
     pub fn new(reader: R, file: &str, settings: Settings) -> Self {
         Self {
-            flow: Flow::new(reader, file, settings.steps),
+            flow: Flow::new(reader, file, &settings),
             block: Block::new(),
             lowering: Lowering::new(settings),
             waiting: VecDeque::new(),
@@ -92,6 +92,10 @@ impl<R: BufRead> Program<R> {
                 self.past_refusals = false;
                 return Err(Fault::new(Span::new(at, at), reason));
             }
+        }
+        if let Err(endless) = self.flow.check_progress(&self.lowering) {
+            self.past_refusals = false;
+            return Err(Fault::new(Span::default(), endless.into()));
         }
         if let Some(sinumerik) = &mut self.sinumerik {
             let text = self.flow.text();
@@ -176,7 +180,7 @@ impl<R: BufRead> Program<R> {
         }
         let number = whole(block, b'P', "number of a subprogram", 0, LARGEST_NUMBER)?
             .ok_or_else(|| missing_of(block, Group::Stop, 'P'))?;
-        let times = whole(block, b'L', "repetitions", 0, MOST_REPETITIONS)?.unwrap_or(1);
+        let times = whole(block, b'L', "number of repetitions", 0, MOST_REPETITIONS)?.unwrap_or(1);
         if self.flow.call_program(number, times).map_err(fault)? {
             self.lowering.enter_subprogram();
         }
@@ -232,7 +236,10 @@ impl<R: BufRead> Program<R> {
     pub(crate) fn read_line(&mut self) -> Result<(), ProgramError> {
         let lost = self.aftermath.place;
         self.lowering.arrived = false;
+        let before = (self.lowering.position, self.lowering.rotary);
         let outcome = self.line();
+        let watch = &mut self.flow.watch;
+        watch.note(before, &self.lowering, &self.waiting);
         if lost && self.lowering.arrived {
             self.aftermath.place = false;
         }

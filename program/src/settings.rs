@@ -20,11 +20,18 @@ pub struct Settings {
     pub lenient: bool,
     /// Lines of loops and subroutines that are run before a program is taken for endless.
     pub steps: u64,
+    /// Those of them that may be run without a move before a program is taken for endless; a line of
+    /// more than 64 bytes counts as several.
+    pub still_steps: u64,
 }
 
 /// Lines of loops and subroutines that a program may run where nobody says otherwise: about a minute
 /// of reading.
 pub const MOST_STEPS: u64 = 100_000_000;
+
+/// Lines of loops and subroutines that a program may run without a move where nobody says otherwise:
+/// half a second of reading.
+pub const MOST_STILL_STEPS: u64 = 500_000;
 
 impl Settings {
     /// Strict reading for a machine of three axes that starts at the origin.
@@ -37,6 +44,7 @@ impl Settings {
             axes: [true; 3],
             lenient: false,
             steps: MOST_STEPS,
+            still_steps: MOST_STILL_STEPS,
         }
     }
 }

@@ -15,9 +15,11 @@ use std::io::BufRead;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Largest number of a subprogram, and most repetitions of one call.
+/// Largest number of a subprogram.
 pub(crate) const LARGEST_NUMBER: u32 = 99_999_999;
-pub(crate) const MOST_REPETITIONS: u32 = 99_999_999;
+
+/// Most repetitions of one call: four digits, as controls of FANUC count them.
+pub(crate) const MOST_REPETITIONS: u32 = 9999;
 
 /// The rest of a file, with the lines of each subprogram in it.
 #[derive(Debug)]

@@ -157,19 +157,82 @@ fn the_state_is_saved_and_restored() {
     );
 }
 
+/// Why a program is refused that goes round and round.
+fn endless(text: &str) -> FlowError {
+    match refusal(text).3 {
+        Reason::Flow(reason) => reason,
+        other => panic!("{text:?}: {other}"),
+    }
+}
+
 #[test]
-fn programs_without_an_end_end_with_a_reason() {
-    let mut few = settings();
-    few.steps = 1000;
+fn a_loop_that_changes_nothing_is_refused_before_it_has_run_three_times() {
     for text in [
         "o1 while [1]\no1 endwhile",
+        "o1 while [1]\n#1=2\no1 endwhile",
         "o1 do\no1 while [1]",
-        "o1 repeat [1000000000]\n(nothing)\no1 endrepeat",
+        "o1 do\nG1 F100 X10\nG0 X0\no1 while [1]",
+        "o1 while [1]\no2 repeat [3]\nG91 G0 X1\no2 endrepeat\nG90 X0\no1 endwhile",
+        "o9 sub\n#1=[#1+1]\nG0 X#1\no9 endsub\no1 while [1]\no9 call [4]\nX0\no1 endwhile",
+        "o1 while [1]\nM98 P5\no1 endwhile\nM2\nO5\nG4 P1\nM99",
     ] {
-        let (.., reason) = refusal_with(text, few);
-        let expected = Reason::Flow(FlowError::TooManySteps { bound: 1000 });
-        assert_eq!(reason, expected, "{text:?}");
+        let mut program = Program::new(text.as_bytes(), FILE, settings());
+        let last = program.by_ref().last().unwrap().unwrap_err();
+        let expected = Reason::Flow(FlowError::Endless);
+        assert_eq!(last.reason(), &expected, "{text:?}: {last}");
+        assert!(program.blocks() < 60, "{text:?}: {}", program.blocks());
     }
+}
+
+#[test]
+fn a_loop_that_comes_to_an_end_is_never_taken_for_endless() {
+    // The state repeats but for one parameter, a tool length, a saved mode, or a place.
+    for text in [
+        "#5000=0\no1 while [#5000 lt 300]\nG0 X1\nX0\n#5000=[#5000+1]\no1 endwhile",
+        "#<n>=0\no1 while [#<n> lt 300]\nG0 X1\nX0\n#<n>=[#<n>+1]\no1 endwhile",
+        "o1 while [#5403 lt 3]\nG10 L1 P7 Z[#5403+0.01]\nG43 H7\no1 endwhile",
+        "G91\no1 while [#5420 lt 300]\nG0 X1\no1 endwhile",
+        "o9 sub\no1 if [#1 gt 0]\no9 call [#1-1]\no1 endif\no9 endsub\no9 call [90]",
+        "o1 repeat [300]\nG0 X1\nX0\no1 endrepeat",
+        "M98 P5 L300\nM2\nO5\nG0 X1\nX0\nM99",
+    ] {
+        read(text);
+    }
+}
+
+#[test]
+fn lines_that_are_run_again_without_a_move_are_counted() {
+    let bound = settings().still_steps;
+    let expected = FlowError::NoMotion { bound };
+    for text in [
+        "o1 while [1]\n#1=[#1+1]\no1 endwhile",
+        "o1 repeat [1000000000]\n(nothing)\no1 endrepeat",
+        "o1 while [1]\n#1=[#1+1]\nG1 F100 X0\nG4 P0\no1 endwhile",
+        "M98 P5 L9999\nM2\nO5\nM98 P6 L9999\nM99\nO6\nM99",
+    ] {
+        assert_eq!(endless(text), expected, "{text:?}");
+    }
+    let counts = |lines: u64| format!("o1 repeat [{}]\n#1=[#1+1]\no1 endrepeat\nG0 X1", lines / 2);
+    read(&counts(bound - 2));
+    assert_eq!(endless(&counts(bound + 2)), expected, "a little more");
+    // A move begins the count anew, and a long line counts as several.
+    read(&format!(
+        "o1 repeat [3]\n{}\no1 endrepeat",
+        counts(bound - 20).replace("o1", "o2") + " G91"
+    ));
+    let long = format!("#1=[#1+1]{}", " ".repeat(6400));
+    let text = format!("o1 repeat [{}]\n{long}\no1 endrepeat", bound / 100);
+    assert_eq!(endless(&text), expected, "long lines");
+}
+
+#[test]
+fn lines_that_are_run_again_are_counted_in_all() {
+    let mut few = settings();
+    few.steps = 1000;
+    let text = "G91\no1 while [1]\nG0 X1\no1 endwhile";
+    let (.., reason) = refusal_with(text, few);
+    let expected = Reason::Flow(FlowError::TooManySteps { bound: 1000 });
+    assert_eq!(reason, expected, "{text:?}");
     let (line, column, _, reason) = refusal("o1 sub\no1 call\no1 endsub\no1 call");
     assert_eq!((line, column), (2, 1), "{reason}");
     assert!(

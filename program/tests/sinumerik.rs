@@ -321,17 +321,25 @@ fn what_is_known_but_not_read_is_refused_with_its_kind() {
 
 #[test]
 fn a_loop_without_end_ends_with_an_error() {
-    let mut few = settings();
-    few.steps = 1000;
-    for text in ["LOOP\nENDLOOP\n", "A1: G4 F0\nGOTOB A1\n"] {
-        let text = text.replace("A1", "AGAIN");
-        let mut poses = Poses::new(text.as_bytes(), FILE, few, Language::Sinumerik);
-        let refused = poses.find_map(Result::err).expect("an end");
-        assert!(
-            refused.to_string().contains("more than 1000 lines"),
-            "{refused}"
-        );
+    let (changes_nothing, counts) = ("nothing changed", "without a move");
+    for (text, expected) in [
+        ("LOOP\nENDLOOP\n", changes_nothing),
+        ("AGAIN: G4 F0\nGOTOB AGAIN\n", changes_nothing),
+        ("AGAIN: G0 X1\nX0\nGOTOB AGAIN\n", changes_nothing),
+        ("WHILE TRUE\nG1 F100 X=10\nX0\nENDWHILE\n", changes_nothing),
+        (
+            "R1=0\nREPEAT\nG91 G0 X1\nG90 X0\nUNTIL R1==5\n",
+            changes_nothing,
+        ),
+        ("R1=0\nLOOP\nR1=R1+1\nENDLOOP\n", counts),
+        ("DEF INT I\nFOR I=1 TO 100000000\nG0 X0\nENDFOR\n", counts),
+    ] {
+        let mut poses = Poses::new(text.as_bytes(), FILE, settings(), Language::Sinumerik);
+        let refused = poses.find_map(Result::err).expect("an end").to_string();
+        assert!(refused.contains(expected), "{text:?}: {refused}");
     }
+    let text = "R1=0\nDEF INT I\nFOR I=1 TO 300\nG0 X1\nX0\nENDFOR\nLOOP\nX1\nX0\nR1=R1+1\nIF R1>300 GOTOF OUT\nENDLOOP\nOUT: X9\n";
+    assert_eq!(try_read(text).unwrap().len(), 1203, "loops that end");
 }
 
 #[test]

@@ -84,6 +84,9 @@ fn subprograms_that_are_not_there_or_not_ended_are_refused() {
         matches!(reason, Reason::WordMissing { letter: 'P', .. }),
         "P"
     );
+    let (.., reason) = refusal("M98 P5 L99999999\nM2\nO5\nM99\n");
+    let most = "number of repetitions is 99999999, but must be a whole number from 0 to 9999";
+    assert_eq!(reason.to_string(), most, "repetitions");
     let (.., reason) = refusal("M98 P1.5\n");
     assert!(matches!(reason, Reason::NotWhole { .. }), "{reason}");
 }

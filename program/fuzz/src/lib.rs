@@ -14,6 +14,7 @@ fn settings(lenient: bool) -> Settings {
     Settings {
         lenient,
         steps: 2_000,
+        still_steps: 1_000,
         ..Settings::new(tolerance)
     }
 }
