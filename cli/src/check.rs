@@ -4,7 +4,6 @@
 
 use crate::args::CheckArgs;
 use crate::error::{CliError, DONE, REFUSED};
-use crate::interrupt::check_interrupt;
 use crate::source::{Source, subroutines, tools};
 use crate::survey::{Remark, Survey};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, Title};
@@ -14,9 +13,6 @@ use toolglide_program::{Language, Place, Poses, Program, ProgramError, Reason, S
 
 /// Errors that are shown; of more, only the number is told.
 const MOST_ERRORS: usize = 100;
-
-/// Moves between two looks at the keyboard.
-const BATCH: u64 = 4096;
 
 /// Reads a program, and tells what it holds and what is wrong with it.
 pub(crate) fn check(
@@ -44,7 +40,6 @@ pub(crate) fn check(
         },
         err,
         quiet: args.json,
-        count: 0,
     };
     if language == Language::Ngc {
         let program = Program::new(source.reader, &source.name, settings)
@@ -82,13 +77,11 @@ struct Seen<'a> {
     err: &'a mut dyn Write,
     /// Whether errors are told in the JSON object only.
     quiet: bool,
-    count: u64,
 }
 
 impl Seen<'_> {
     fn read<R: BufRead>(&mut self, mut program: Program<R>) -> Result<(), CliError> {
         while let Some(next) = program.next() {
-            self.pause()?;
             match next {
                 Ok(step) => self.survey.meet(&step),
                 Err(error) => self.refuse(&error, &program.line_text()),
@@ -108,7 +101,6 @@ impl Seen<'_> {
 
     fn read_poses<R: BufRead>(&mut self, mut poses: Poses<R>) -> Result<(), CliError> {
         while let Some(next) = poses.next() {
-            self.pause()?;
             match next {
                 Ok(step) => self.survey.meet_pose(&step),
                 Err(error) => self.refuse(&error, &poses.line_text()),
@@ -122,14 +114,6 @@ impl Seen<'_> {
         survey.warnings = poses.warnings().iter().map(Remark::of_warning).collect();
         survey.more_warnings = poses.more_warnings();
         self.finish(poses.warnings());
-        Ok(())
-    }
-
-    fn pause(&mut self) -> Result<(), CliError> {
-        self.count += 1;
-        if self.count.is_multiple_of(BATCH) {
-            check_interrupt()?;
-        }
         Ok(())
     }
 

@@ -41,9 +41,9 @@ fn run<const N: usize>(
 where
     Move<N>: OnAxes,
 {
+    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
-    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let chosen = chosen(&args.methods);
     let tuning = Tuning::of(&args.tuning, setup)?;
     let (start, limits) = (setup.start::<N>(), setup.limits::<N>());

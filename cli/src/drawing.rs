@@ -34,7 +34,7 @@ impl Drawing {
 
     /// Gives the complete file its name.
     pub(crate) fn commit(self) -> Result<(), CliError> {
-        self.file.commit()
+        OutputFile::commit([self.file])
     }
 }
 
@@ -105,17 +105,14 @@ impl PlanFiles {
 
     /// Gives the complete files their names. Says whether the rows have standard output to themselves.
     pub(crate) fn commit(self) -> Result<bool, CliError> {
-        if let Some(rows) = self.rows.file {
-            rows.commit()?;
-        }
-        if let Some(drawing) = self.drawing {
-            drawing.commit()?;
-        }
+        let drawing = self.drawing.map(|drawing| drawing.file);
+        OutputFile::commit(self.rows.file.into_iter().chain(drawing))?;
         Ok(self.rows.to_stdout)
     }
 }
 
 /// What a run reads, which must not be written over.
-fn inputs(job: &JobArgs) -> [&Path; 2] {
-    [job.program.as_path(), Path::new(&job.machine)]
+fn inputs(job: &JobArgs) -> Vec<&Path> {
+    let read = [job.program.as_path(), Path::new(&job.machine)];
+    read.into_iter().chain(job.tool_table.as_deref()).collect()
 }

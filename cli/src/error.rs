@@ -15,8 +15,10 @@ pub const DONE: u8 = 0;
 pub const OUTSIDE: u8 = 1;
 /// Wrong use or wrong input: there is no result.
 pub const REFUSED: u8 = 2;
-/// Stopped from the keyboard, as shells count it.
+/// Ended by SIGINT, as from the keyboard, as shells count it.
 pub const INTERRUPTED: u8 = 130;
+/// Ended by SIGTERM, as shells count it.
+pub const TERMINATED: u8 = 143;
 
 /// Why a run ends without a result.
 #[derive(Debug, Error)]
@@ -124,9 +126,6 @@ pub enum CliError {
     /// Whoever read our output has seen enough.
     #[error("the reader of the output has gone")]
     BrokenPipe,
-    /// Stopped from the keyboard.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
 }
 
 impl CliError {
@@ -155,7 +154,6 @@ impl CliError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::BrokenPipe => DONE,
-            Self::Interrupted => INTERRUPTED,
             Self::Outside { .. } => OUTSIDE,
             _ => REFUSED,
         }

@@ -2,7 +2,8 @@
 //! code, so that tests and other programs need no process.
 //!
 //! Exit codes: [`DONE`] when all is well, [`OUTSIDE`] when the motion breaks a limit, [`REFUSED`] for
-//! wrong use or wrong input, [`INTERRUPTED`] when stopped from the keyboard.
+//! wrong use or wrong input, [`INTERRUPTED`] and [`TERMINATED`] when a signal ends the process, which
+//! [`end_on_signals`] does tidily.
 
 mod args;
 mod check;
@@ -12,9 +13,9 @@ mod decimals;
 mod drawing;
 mod error;
 mod filters;
-mod interrupt;
 mod machines;
 mod output;
+mod part;
 mod pipeline;
 mod plan;
 mod planner;
@@ -26,6 +27,7 @@ mod score;
 mod set_points;
 mod setup;
 mod shown;
+mod signals;
 mod source;
 mod spectrum;
 mod standing;
@@ -36,9 +38,9 @@ mod travel;
 mod values;
 mod verify;
 
-pub use error::{CliError, DONE, INTERRUPTED, OUTSIDE, REFUSED};
-pub use interrupt::interrupt;
+pub use error::{CliError, DONE, INTERRUPTED, OUTSIDE, REFUSED, TERMINATED};
 pub use planner::{METHODS, MethodName};
+pub use signals::end_on_signals;
 
 use args::{Command, CommandLine};
 use clap::{CommandFactory, Parser};

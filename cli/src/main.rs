@@ -4,8 +4,7 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // Without a handler the run is only less tidy when it is interrupted.
-    let _ = ctrlc::set_handler(toolglide_cli::interrupt);
+    toolglide_cli::end_on_signals();
     let code = toolglide_cli::run(
         std::env::args_os(),
         &mut std::io::stdout().lock(),

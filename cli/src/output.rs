@@ -4,10 +4,10 @@
 //! nothing half-written and an older file untouched. Devices and pipes are written directly.
 
 use crate::error::CliError;
+use crate::part::{Part, name_all};
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// A file being written.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub(crate) struct OutputFile {
 
 #[derive(Debug)]
 enum Target {
-    Beside(NamedTempFile, PathBuf),
+    Beside(Part),
     Direct(File),
 }
 
@@ -43,8 +43,11 @@ impl OutputFile {
                 return Err(refuse(io::Error::other("it is write-protected")));
             }
             // A link stays a link: what it points at is replaced.
-            Ok(_) => beside(std::fs::canonicalize(path).map_err(refuse)?).map_err(refuse)?,
-            Err(_) => beside(path.to_owned()).map_err(refuse)?,
+            Ok(_) => {
+                let place = std::fs::canonicalize(path).map_err(refuse)?;
+                Target::Beside(Part::begin(place).map_err(refuse)?)
+            }
+            Err(_) => Target::Beside(Part::begin(path.to_owned()).map_err(refuse)?),
         };
         Ok(Self {
             path: path.to_owned(),
@@ -57,51 +60,36 @@ impl OutputFile {
         &self.path
     }
 
-    /// Gives the complete file its name.
-    pub(crate) fn commit(self) -> Result<(), CliError> {
-        let path = self.path;
-        match self.target {
-            Target::Direct(mut file) => {
-                file.flush().map_err(|reason| CliError::write(path, reason))
+    /// Gives the complete files their names, all or none where a signal comes between.
+    pub(crate) fn commit(files: impl IntoIterator<Item = Self>) -> Result<(), CliError> {
+        let mut finished = Vec::new();
+        for file in files {
+            match file.target {
+                Target::Direct(mut device) => {
+                    let flushed = device.flush();
+                    flushed.map_err(|reason| CliError::write(file.path, reason))?;
+                }
+                Target::Beside(part) => finished.push(part),
             }
-            Target::Beside(file, place) => file
-                .persist(place)
-                .map(drop)
-                .map_err(|refused| CliError::write(path, refused.error)),
         }
+        name_all(finished).map_err(|(place, reason)| CliError::write(place, reason))
     }
 }
 
 impl Write for OutputFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.target {
-            Target::Beside(file, _) => file.write(bytes),
+            Target::Beside(part) => part.write(bytes),
             Target::Direct(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.target {
-            Target::Beside(file, _) => file.flush(),
+            Target::Beside(part) => part.flush(),
             Target::Direct(file) => file.flush(),
         }
     }
-}
-
-fn beside(place: PathBuf) -> io::Result<Target> {
-    let folder = match place.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".toolglide-").suffix(".part");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The usual permissions of a new file; the system takes off what its mask forbids.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    Ok(Target::Beside(builder.tempfile_in(folder)?, place))
 }
 
 /// Whether two paths lead to one file; a file that does not exist yet is compared by its place.
@@ -142,7 +130,7 @@ mod tests {
         let mut complete = OutputFile::begin(&path, &[]).unwrap();
         complete.write_all(b"whole").unwrap();
         assert!(!path.exists(), "not yet");
-        complete.commit().unwrap();
+        OutputFile::commit([complete]).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");
         assert_eq!(
             std::fs::read_dir(folder.path()).unwrap().count(),
@@ -160,6 +148,49 @@ mod tests {
         abandoned.write_all(b"new").unwrap();
         drop(abandoned);
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
+    }
+
+    #[test]
+    fn what_a_killed_run_left_behind_is_taken_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("motion.csv");
+        let left = folder.path().join(".motion.csv.part");
+        std::fs::write(&left, "much more than this run has to write").unwrap();
+        let mut file = OutputFile::begin(&path, &[]).unwrap();
+        file.write_all(b"whole").unwrap();
+        let refused = OutputFile::begin(&path, &[]).unwrap_err().to_string();
+        assert!(refused.ends_with("another run is writing it"), "{refused}");
+        OutputFile::commit([file]).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"whole");
+        assert!(!left.exists(), "taken over");
+    }
+
+    #[test]
+    fn a_folder_in_the_way_and_a_missing_folder_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("motion.csv");
+        std::fs::create_dir(folder.path().join(".motion.csv.part")).unwrap();
+        let refused = OutputFile::begin(&path, &[]).unwrap_err().to_string();
+        assert!(
+            refused.contains(".motion.csv.part is in the way"),
+            "{refused}"
+        );
+        let path = folder.path().join("none").join("motion.csv");
+        let refused = OutputFile::begin(&path, &[]).unwrap_err().to_string();
+        assert!(refused.contains("there is no folder"), "{refused}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_is_replaced_keeps_its_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("motion.csv");
+        std::fs::write(&path, "old").unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o640)).unwrap();
+        OutputFile::commit([OutputFile::begin(&path, &[]).unwrap()]).unwrap();
+        let mode = std::fs::metadata(&path).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o640, "mode");
     }
 
     #[test]
@@ -190,7 +221,7 @@ mod tests {
         let path = Path::new("/dev/null");
         let mut device = OutputFile::begin(path, &[]).unwrap();
         device.write_all(b"gone").unwrap();
-        device.commit().unwrap();
+        OutputFile::commit([device]).unwrap();
         assert!(
             !std::fs::metadata(path).unwrap().is_file(),
             "still a device"

@@ -5,7 +5,6 @@
 //! read for every move would cost as much as planning it.
 
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use crate::plot::Plot;
 use crate::set_points::SetPoints;
 use crate::travel::{OnAxes, Travel};
@@ -49,7 +48,6 @@ where
 
     /// Fills a batch; `false` when the program is over.
     pub(crate) fn fill(&mut self, batch: &mut Vec<Move<N>>) -> Result<bool, CliError> {
-        check_interrupt()?;
         batch.clear();
         while batch.len() < MOVES {
             match self.next()? {
@@ -171,7 +169,6 @@ impl<const N: usize> Lane<N> {
                 self.judge.observe(&piece);
                 take(&piece)?;
             }
-            check_interrupt()?;
         }
         Ok(())
     }

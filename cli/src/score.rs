@@ -6,7 +6,6 @@
 use crate::args::ScoreArgs;
 use crate::drawing::Drawing;
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use crate::plan::{moves, title, warn};
 use crate::planner::{Tuning, chosen, planner};
 use crate::plot::{Caption, Contrast};
@@ -49,23 +48,18 @@ fn run<const N: usize>(
 where
     Move<N>: OnAxes,
 {
+    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
-    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let limits = setup.limits::<N>();
     let mut windows = Windows::new(setup.start::<N>(), limits);
     let mut moves = moves::<N>(&args.job, setup, source);
-    let mut count = 0_u64;
     while let Some(next) = moves.next()? {
         windows.push(&next).map_err(|reason| CliError::Plan {
             program: name.clone(),
             line: next.line(),
             reason,
         })?;
-        count += 1;
-        if count.is_multiple_of(1024) {
-            check_interrupt()?;
-        }
     }
     warn(&moves.program, err);
     drop(moves);
@@ -206,7 +200,6 @@ impl<const N: usize> Scorer<'_, N> {
                         contrast.observe(0, piece);
                     }
                     self.add_course(&mut sums, window, course, &score);
-                    check_interrupt()?;
                 }
             }
         }

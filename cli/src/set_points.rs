@@ -5,7 +5,6 @@
 //! so that an end which falls on a tick is one row and not two.
 
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use std::io::Write;
 use std::path::PathBuf;
 use toolglide_kinematics::{Axis, AxisKind, Piece, SamplePeriod, Sampler, Vector};
@@ -134,7 +133,6 @@ impl<'a, const N: usize> SetPoints<'a, N> {
     }
 
     fn hand_on(&mut self) -> Result<(), CliError> {
-        check_interrupt()?;
         if let Some(destination) = &mut self.destination {
             destination
                 .sink

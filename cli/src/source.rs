@@ -118,7 +118,16 @@ pub(crate) fn subroutines(
             return Ok(None);
         }
         let path = folder.join(format!("{name}.ngc"));
-        match File::open(&path) {
+        match std::fs::metadata(&path).and_then(|found| {
+            // Opening a pipe would wait for whoever writes it.
+            if found.is_file() {
+                File::open(&path)
+            } else {
+                Err(std::io::Error::other(
+                    "it is no file of text, but a folder, a pipe or a device",
+                ))
+            }
+        }) {
             Ok(file) => {
                 let mut text = Vec::new();
                 file.take(LARGEST_FILE).read_to_end(&mut text)?;

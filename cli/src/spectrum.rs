@@ -146,9 +146,9 @@ where
 {
     let modes = excited(setup)?;
     let tuning = Tuning::of(&args.tuning, setup)?;
+    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
-    let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let frequencies = frequencies(&modes);
     let mut axes: Vec<usize> = modes.iter().map(|excited| excited.axis).collect();
     axes.sort_unstable();

@@ -6,7 +6,6 @@
 
 use crate::args::VerifyArgs;
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use crate::output::same_file;
 use crate::pipeline::Moves;
 use crate::plan::{moves, warn};
@@ -30,9 +29,6 @@ const MOVES_AHEAD: u32 = 4096;
 /// Length of path that is expected, in lengths that the axes can go before the next set-point: a
 /// path with many turns is longer than the motion that rounds them.
 const LENGTHS_AHEAD: f64 = 8.0;
-
-/// Rows between two looks at whether the run was interrupted.
-const ROWS: u64 = 1 << 14;
 
 /// Runs the command.
 pub(crate) fn verify(
@@ -93,9 +89,6 @@ where
             .map_err(|reason| refusal(&table, &reason))?;
         last = Some(time);
         rows += 1;
-        if rows % ROWS == 0 {
-            check_interrupt()?;
-        }
     }
     follower.read_rest()?;
     let verdict = follower.judge.finish();
@@ -109,13 +102,7 @@ where
 /// What rounding may have changed in a coordinate: half a step of the finest number.
 fn resolution<const N: usize>(file: &Path, setup: &Setup) -> Result<f64, CliError> {
     let mut table = Table::<_, N>::open(file, open(file)?, &setup.axes)?;
-    let mut rows = 0_u64;
-    while table.row()?.is_some() {
-        rows += 1;
-        if rows.is_multiple_of(ROWS) {
-            check_interrupt()?;
-        }
-    }
+    while table.row()?.is_some() {}
     Ok(0.5 * table.resolution())
 }
 

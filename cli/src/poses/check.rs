@@ -6,7 +6,6 @@ use super::inputs::Inputs;
 use super::summary::PoseSummary;
 use crate::args::VerifyArgs;
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use crate::output::same_file;
 use crate::shown::show;
 use crate::source::open_file;
@@ -16,9 +15,6 @@ use std::io::{BufReader, Write};
 use std::path::Path;
 use toolglide_kinematics::verify::pose::PoseSetPointJudge;
 use toolglide_kinematics::{AxisKind, AxisVector};
-
-/// Rows between two looks at whether the run was interrupted.
-const ROWS: u64 = 1 << 14;
 
 /// Runs the command.
 pub(crate) fn verify(
@@ -98,9 +94,6 @@ fn judge<const N: usize>(
             .observe(time, &at)
             .map_err(|reason| table.refuse(reason.to_string()))?;
         rows += 1;
-        if rows % ROWS == 0 {
-            check_interrupt()?;
-        }
     }
     let verdict = judge.finish();
     legs.warn(err);

@@ -3,7 +3,6 @@
 //! As for straight axes, the end is one more row, exactly. Not here: sampling.
 
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use crate::set_points::{
     CHUNK, Destination, SAME_INSTANT, SAME_INSTANT_SHARE, WHOLE_RATE, header, number,
 };
@@ -124,7 +123,6 @@ impl<'a> Rows<'a> {
     }
 
     fn hand_on(&mut self) -> Result<(), CliError> {
-        check_interrupt()?;
         if let Some(destination) = &mut self.destination {
             destination
                 .sink

@@ -10,7 +10,6 @@ use super::summary::PoseSummary;
 use crate::args::PlanArgs;
 use crate::drawing::PlanFiles;
 use crate::error::CliError;
-use crate::interrupt::check_interrupt;
 use crate::plan::title;
 use crate::plot::Caption;
 use crate::shown::{show, show_beside_rows};
@@ -192,7 +191,6 @@ impl<'a> Run<'a> {
 
     fn hand_on(&mut self) -> Result<(), CliError> {
         while let Some(piece) = self.planner.pull() {
-            check_interrupt()?;
             self.take(piece)?;
         }
         Ok(())
