@@ -83,6 +83,8 @@ pub(crate) fn arc(
         }
     }
     let counter_clockwise = motion == Motion::CounterClockwise;
+    let frame = state.offsets.frame();
+    let counter_clockwise = counter_clockwise != frame.mirrors(axes);
     let (center, blamed) = center(block, state, counter_clockwise, start, end)?;
     let turns = whole(block, b'P', "number of turns", 1, MOST_TURNS)?.unwrap_or(1);
     Arc::about(start, end, center, axes, counter_clockwise, turns - 1)
@@ -123,6 +125,7 @@ fn center(
             modal
                 .units
                 .bounded_length('R', written)
+                .map(|radius| radius * state.offsets.frame().scale(plane.axes()[0]))
                 .and_then(|radius| center_by_radius(plane, radius, counter_clockwise, start, end))
                 .map(|center| (center, span))
                 .map_err(|reason| Fault::new(span, reason))

@@ -58,6 +58,33 @@ pub enum ArithmeticError {
         /// Largest number.
         most: u32,
     },
+    /// A word that is no function of macro B.
+    #[error(
+        "no function: write ABS, ACOS, ASIN, ATAN, BCD, BIN, COS, EXP, FIX, FUP, LN, POW, ROUND, SIN, SQRT or TAN"
+    )]
+    UnknownMacroFunction,
+    /// A variable that cannot be.
+    #[error("number of a variable is {value}, but must be a whole number from 0 to {most}")]
+    NoSuchVariable {
+        /// The number.
+        value: f64,
+        /// Largest number.
+        most: u32,
+    },
+    /// A variable whose value nobody knows before the machine runs.
+    #[error("{name} is not known before the machine runs: {what}")]
+    NotKnown {
+        /// The variable.
+        name: Box<str>,
+        /// What it tells.
+        what: &'static str,
+    },
+    /// A variable of the control that a program may not write here.
+    #[error("variable #{number} is one of the control and cannot be set here")]
+    NotWritable {
+        /// The variable.
+        number: u32,
+    },
     /// A parameter that a program may read only.
     #[error("parameter #{number} says where the machine is and cannot be set")]
     ReadOnly {

@@ -7,6 +7,7 @@ use crate::codes::{
     Distance, FeedMode, Group, Motion, Once, PathControl, Plane, Saving, Side, Stop, Subprogram,
     ToolLength,
 };
+use crate::corners::CornerKind;
 use crate::error::{Fault, Remark};
 use crate::lexer::{Assignment, Lexer, Word};
 use crate::parameters::Values;
@@ -98,6 +99,8 @@ pub(crate) struct Block {
     pub(crate) path_control: Option<PathControl>,
     pub(crate) stop: Option<Stop>,
     pub(crate) subprogram: Option<Subprogram>,
+    /// How the corner at the end of the block is broken, as written.
+    pub(crate) corner: Option<(CornerKind, f64, Span)>,
 }
 
 impl Block {
@@ -135,6 +138,7 @@ impl Block {
             path_control: None,
             stop: None,
             subprogram: None,
+            corner: None,
         }
     }
 
@@ -163,6 +167,7 @@ impl Block {
         self.path_control = None;
         self.stop = None;
         self.subprogram = None;
+        self.corner = None;
     }
 
     /// Replaces the block by the words of `line`.
@@ -216,6 +221,34 @@ impl Block {
             b'M' => self.miscellaneous(word, settings, remarks),
             _ => self.value(word, settings),
         }
+    }
+
+    /// Counts a word that was not added.
+    pub(crate) fn note_word(&mut self) {
+        self.words += 1;
+    }
+
+    /// Codes of the block, with the number of their group on controls of FANUC where it has one.
+    pub(crate) fn codes_taken(&self) -> impl Iterator<Item = (Code, Option<usize>)> + '_ {
+        [
+            (Group::Motion, 1),
+            (Group::Plane, 2),
+            (Group::Distance, 3),
+            (Group::FeedMode, 5),
+            (Group::Units, 6),
+            (Group::CutterCompensation, 7),
+            (Group::ToolLength, 8),
+            (Group::Return, 10),
+            (Group::SpindleMode, 13),
+            (Group::Coordinates, 14),
+            (Group::PathControl, 15),
+        ]
+        .into_iter()
+        .filter_map(|(group, number)| {
+            let (code, _) = self.taker(group)?;
+            let cycle = group == Group::Motion && self.motion.is_some_and(Motion::is_cycle);
+            Some((code, Some(if cycle { 9 } else { number })))
+        })
     }
 
     /// Whether the line says nothing.

@@ -23,6 +23,8 @@ pub(crate) enum Motion {
     Knots,
     /// Canned cycle, by the number of its code.
     Cycle(u8),
+    /// `G87` of FANUC: the tool goes to the bottom beside the hole, and bores upwards.
+    BackBore,
 }
 
 impl Motion {
@@ -38,11 +40,12 @@ impl Motion {
             Self::Nurbs => Code::new(b'G', 52),
             Self::Knots => Code::new(b'G', 62),
             Self::Cycle(number) => Code::new(b'G', 10 * number as u16),
+            Self::BackBore => Code::new(b'G', 870),
         }
     }
 
     pub(crate) fn is_cycle(self) -> bool {
-        matches!(self, Self::Cycle(_))
+        matches!(self, Self::Cycle(_) | Self::BackBore)
     }
 
     pub(crate) fn is_arc(self) -> bool {
@@ -100,6 +103,8 @@ pub(crate) enum ToolLength {
     Given,
     /// Added to what there is.
     Added,
+    /// From the tool table, taken off: `G44` of FANUC.
+    Against,
 }
 
 /// What holds for one block only.

@@ -35,7 +35,7 @@ impl Lowering {
         depth: usize,
     ) -> Result<CycleState, Fault> {
         let before = self.cycle.filter(|state| former == state.motion);
-        let sticky = before.filter(|state| state.motion == motion);
+        let sticky = before.filter(|state| self.fanuc || state.motion == motion);
         let consecutive = self.cycle.filter(|_| former.is_cycle());
         let initial = consecutive.map_or(self.program[depth], |state| state.initial);
         let code = motion.code();
@@ -52,8 +52,13 @@ impl Lowering {
             within_reach(char::from(letter), sum)
                 .map_err(|reason| Fault::new(block.span(letter), reason))
         };
+        let above = if self.fanuc {
+            initial
+        } else {
+            self.program[depth]
+        };
         let retract = match (self.length(block, b'R')?, sticky) {
-            (Some(length), _) => from(b'R', self.program[depth], length)?,
+            (Some(length), _) => from(b'R', above, length)?,
             (None, Some(state)) => state.retract,
             (None, None) => return Err(incomplete(b'R')),
         };
@@ -62,7 +67,7 @@ impl Lowering {
             (None, Some(state)) => state.bottom,
             (None, None) => return Err(incomplete(AXES[depth])),
         };
-        if retract < bottom {
+        if retract < bottom && motion != Motion::BackBore {
             let reason = MachiningError::RetractBelowBottom { retract, bottom };
             return Err(Fault::new(motion_span(block), reason.into()));
         }
@@ -74,12 +79,12 @@ impl Lowering {
                 return Err(Fault::new(block.span(b'Q'), reason));
             }
             (Some(peck), _) => peck,
-            (None, Some(state)) => state.peck,
-            (None, None) if needs_peck => return Err(incomplete(b'Q')),
-            (None, None) => 0.0,
+            (None, Some(state)) if state.peck > 0.0 || !needs_peck => state.peck,
+            (None, _) if needs_peck => return Err(incomplete(b'Q')),
+            (None, _) => 0.0,
         };
         let dwell = not_negative(block, b'P', "dwell")?;
-        let needs_dwell = matches!(motion, Motion::Cycle(82 | 86 | 88 | 89));
+        let needs_dwell = !self.fanuc && matches!(motion, Motion::Cycle(82 | 86 | 88 | 89));
         let dwell = match (dwell, sticky) {
             (Some(dwell), _) => dwell,
             (None, Some(state)) => state.dwell,

@@ -89,7 +89,11 @@ impl Lowering {
         };
         let repetitions = whole(block, b'L', "number of repetitions", 0, MOST_MOVES)?.unwrap_or(1);
         let first = moves.len();
-        let mut outcome = self.raise(&hole, moves);
+        let mut outcome = match motion {
+            // Of this one the plane of R lies below.
+            Motion::BackBore => Ok(()),
+            _ => self.raise(&hole, moves),
+        };
         let mut center = self.program;
         for _ in 0..repetitions {
             if outcome.is_err() {
@@ -145,6 +149,9 @@ impl Lowering {
         let rapid = Feedrate::RAPID;
         let feed = hole.feedrate;
         let (bottom, retract) = (hole.bottom, hole.retract);
+        if motion == Motion::BackBore {
+            return self.bore_from_below(hole, state, center, moves);
+        }
         // Returning to where the cycles began means going across there too.
         let mut above = center;
         let height = self.program[hole.depth];
@@ -172,6 +179,7 @@ impl Lowering {
                 self.go_deep(hole, bottom, feed, moves)?;
             }
             Motion::Cycle(87) => return self.bore_back(hole, state, center, moves),
+            Motion::Cycle(76) => return self.bore_fine(hole, state, center, moves),
             _ => self.go_deep(hole, bottom, feed, moves)?,
         }
         if state.dwell > 0.0 {
@@ -189,6 +197,65 @@ impl Lowering {
             }
             _ => self.go_deep(hole, hole.clear, rapid, moves),
         }
+    }
+
+    /// Where a bored hole is left without touching it, beside its centre: by `I` and `J`, or by `Q` along the
+    /// first axis.
+    fn beside(hole: &Hole, state: &CycleState, center: Vector<3>) -> Vector<3> {
+        let [first, second, _] = state.offsets;
+        let first = if first == 0.0 && second == 0.0 {
+            state.peck
+        } else {
+            first
+        };
+        let mut beside = center;
+        beside[hole.sides[0]] += first;
+        beside[hole.sides[1]] += second;
+        beside
+    }
+
+    /// `G76` of FANUC: the tool bores down, and goes up beside the wall.
+    fn bore_fine(
+        &mut self,
+        hole: &Hole,
+        state: &CycleState,
+        center: Vector<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let rapid = Feedrate::RAPID;
+        let beside = Self::beside(hole, state, center);
+        self.go_deep(hole, hole.bottom, hole.feedrate, moves)?;
+        if state.dwell > 0.0 {
+            moves.push_back(self.rest(state.dwell, hole.span)?);
+        }
+        self.go_aside(hole, beside, rapid, moves)?;
+        self.go_deep(hole, hole.clear, rapid, moves)?;
+        self.go_aside(hole, center, rapid, moves)
+    }
+
+    /// `G87` of FANUC: the tool goes down beside the hole to `R`, bores up to `Z`, and leaves beside it; it
+    /// always returns to where the cycles began.
+    fn bore_from_below(
+        &mut self,
+        hole: &Hole,
+        state: &CycleState,
+        center: Vector<3>,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        let rapid = Feedrate::RAPID;
+        let beside = Self::beside(hole, state, center);
+        self.go_deep(hole, state.initial, rapid, moves)?;
+        self.go_aside(hole, center, rapid, moves)?;
+        self.go_aside(hole, beside, rapid, moves)?;
+        self.go_deep(hole, hole.retract, rapid, moves)?;
+        self.go_aside(hole, center, hole.feedrate, moves)?;
+        self.go_deep(hole, hole.bottom, hole.feedrate, moves)?;
+        if state.dwell > 0.0 {
+            moves.push_back(self.rest(state.dwell, hole.span)?);
+        }
+        self.go_aside(hole, beside, rapid, moves)?;
+        self.go_deep(hole, state.initial, rapid, moves)?;
+        self.go_aside(hole, center, rapid, moves)
     }
 
     /// `G87`: the tool goes down beside the hole, and cuts upwards.

@@ -91,7 +91,7 @@ impl Lowering {
     }
 
     /// A system in force follows its parameters.
-    fn take_again(&mut self, number: u8) {
+    pub(crate) fn take_again(&mut self, number: u8) {
         if number == self.offsets.system() {
             self.offsets.take_system(number, &self.parameters);
         }

@@ -87,6 +87,28 @@ pub enum Notice {
     /// A word was skipped that would have been refused by strict reading; no axis depends on it.
     #[error("skipped: {0}")]
     Skipped(Reason),
+    /// A word that was read and that moves no axis; said once for each.
+    #[error("{word} is noted, and moves no axis: {what}")]
+    Noted {
+        /// The word.
+        word: Box<str>,
+        /// What it stands for.
+        what: &'static str,
+    },
+    /// The program ends where the next one of the file begins.
+    #[error("program O{number} begins here, so the one before it ends without M30")]
+    NextProgram {
+        /// Number of the program that begins.
+        number: u32,
+    },
+    /// A dwell so long that its unit may be meant otherwise.
+    #[error("stands still for {seconds} s: {}", if *milliseconds { "is that meant?" } else { "P is in seconds here; --dialect fanuc reads it in milliseconds" })]
+    LongDwell {
+        /// How long, s.
+        seconds: f64,
+        /// Whether the dialect counts in milliseconds.
+        milliseconds: bool,
+    },
     /// The length or the radius of a tool is asked for, but there is no tool table.
     #[error("there is no tool table, so tool {tool} counts as a point at the spindle")]
     NoToolTable {

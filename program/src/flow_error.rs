@@ -99,6 +99,58 @@ pub enum FlowError {
         /// What is missing.
         closing: &'static str,
     },
+    /// A condition without an expression in brackets.
+    #[error("a condition in brackets is missing, as in [#1 LT 5]")]
+    ConditionMissing,
+    /// `IF` with nothing behind its condition.
+    #[error("nothing follows the condition: write GOTO, THEN or a statement")]
+    ConditionAlone,
+    /// `WHILE` without its `DO`.
+    #[error("WHILE needs DO and a number behind its condition, as in DO1")]
+    WhileWithoutDo,
+    /// A keyword without its number.
+    #[error("a whole number from 1 to {most} is missing here")]
+    NumberMissing {
+        /// Largest number.
+        most: u32,
+    },
+    /// Something behind a statement of macro B.
+    #[error("nothing may follow here: a statement stands alone on its line")]
+    BehindStatement,
+    /// A loop without its end.
+    #[error(
+        "DO{number} is not closed: END{number} is missing{}", 
+        if *inner { " before the next loop of this number" } else { "" }
+    )]
+    LoopNotClosed {
+        /// Number of the loop.
+        number: u32,
+        /// Whether another loop of its number begins first.
+        inner: bool,
+    },
+    /// The end of a loop that does not run.
+    #[error("END{number} of a loop that does not run: a loop is entered by its DO{number}")]
+    LoopNotOpen {
+        /// Number of the loop.
+        number: u32,
+    },
+    /// The program ends itself with an alarm.
+    #[error("the program raises its alarm {number}{}{text}", if text.is_empty() { "" } else { ": " })]
+    Alarm {
+        /// Number of the alarm.
+        number: f64,
+        /// Its text.
+        text: Box<str>,
+    },
+    /// A call of a macro that is not there.
+    #[error(
+        "there is no macro O{number} in this file, nor a file of it beside the program{}",
+        if (9800..9900).contains(number) { "; macros of this number measure with a probe, and what it touches is not known before" } else { "" }
+    )]
+    NoMacro {
+        /// Its number.
+        number: u32,
+    },
     /// A file that should hold a subroutine, but does not.
     #[error("the file of subroutine {label} {message}")]
     BadFile {

@@ -1,7 +1,7 @@
 //! A coordinate system that a program shifts and turns as it likes.
 //!
 //! Source: programmable frames of Sinumerik: each shift and each turn is in the system that those
-//! before it made. Not here: the words that ask for them.
+//! before it made; mirror, scaling and rotation of FANUC. Not here: the words that ask for them.
 
 use toolglide_kinematics::Vector;
 
@@ -10,6 +10,8 @@ use toolglide_kinematics::Vector;
 pub(crate) struct Frame {
     /// Its axes in the workpiece, unit vectors.
     axes: [[f64; 3]; 3],
+    /// How much longer a length of the program is along each of its axes; negative where it is mirrored.
+    scale: [f64; 3],
     shift: [f64; 3],
 }
 
@@ -17,13 +19,15 @@ impl Frame {
     /// The workpiece itself.
     pub(crate) const NONE: Self = Self {
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        scale: [1.0; 3],
         shift: [0.0; 3],
     };
 
     /// A point of the program in the workpiece.
     pub(crate) fn out(&self, point: Vector<3>) -> Vector<3> {
         Vector::from_fn(|row, _| {
-            let turned: f64 = (0..3).map(|axis| self.axes[axis][row] * point[axis]).sum();
+            let scaled = |axis: usize| self.scale[axis] * point[axis];
+            let turned: f64 = (0..3).map(|axis| self.axes[axis][row] * scaled(axis)).sum();
             turned + self.shift[row]
         })
     }
@@ -31,12 +35,56 @@ impl Frame {
     /// A point of the workpiece in the program.
     pub(crate) fn back(&self, point: Vector<3>) -> Vector<3> {
         let from = point - Vector::<3>::from(self.shift);
-        Vector::from_fn(|axis, _| (0..3).map(|row| self.axes[axis][row] * from[row]).sum())
+        Vector::from_fn(|axis, _| {
+            let turned: f64 = (0..3).map(|row| self.axes[axis][row] * from[row]).sum();
+            turned / self.scale[axis]
+        })
     }
 
-    /// Whether its axes are those of the workpiece.
-    pub(crate) fn is_straight(&self) -> bool {
-        self.axes == Self::NONE.axes
+    /// Whether arcs across an axis stay arcs across it: it keeps its direction, or is mirrored, and both
+    /// axes of the plane are scaled alike.
+    #[allow(
+        clippy::float_cmp,
+        reason = "the very axes, and the very factors, that were written"
+    )]
+    pub(crate) fn keeps_arcs_across(&self, normal: usize) -> bool {
+        let (first, second) = ((normal + 1) % 3, (normal + 2) % 3);
+        let alike = self.scale[first].abs() == self.scale[second].abs();
+        self.axes[normal] == Self::NONE.axes[normal] && alike
+    }
+
+    /// Whether lengths along two axes are scaled alike.
+    #[allow(clippy::float_cmp, reason = "the very factors that were written")]
+    pub(crate) fn is_even(&self, [first, second]: [usize; 2]) -> bool {
+        self.scale[first].abs() == self.scale[second].abs()
+    }
+
+    /// Whether arcs in the plane of two axes change their direction.
+    pub(crate) fn mirrors(&self, [first, second]: [usize; 2]) -> bool {
+        self.scale[first] * self.scale[second] < 0.0
+    }
+
+    /// How much longer a length along an axis becomes.
+    pub(crate) fn scale(&self, axis: usize) -> f64 {
+        self.scale[axis].abs()
+    }
+
+    /// The frame with lengths along its own axes multiplied.
+    pub(crate) fn scaled(mut self, factors: [f64; 3]) -> Self {
+        self.scale = std::array::from_fn(|axis| self.scale[axis] * factors[axis]);
+        self
+    }
+
+    /// The frame with its origin at a point of the workpiece, mm.
+    pub(crate) fn placed(mut self, at: Vector<3>) -> Self {
+        self.shift = at.into();
+        self
+    }
+
+    /// The frame with its origin in that of the workpiece.
+    pub(crate) fn without_shift(mut self) -> Self {
+        self.shift = Self::NONE.shift;
+        self
     }
 
     /// The frame moved in its own coordinates, mm.

@@ -4,7 +4,7 @@
 
 use crate::block::{Block, POINT};
 use crate::code::Code;
-use crate::codes::{Group, Meaning, Motion};
+use crate::codes::{Group, Meaning, Motion, ToolLength};
 use crate::error::{Fault, Notice, Remark};
 use crate::lexer::Word;
 use crate::meanings::{Unread, miscellaneous, of_rotary, preparatory};
@@ -80,6 +80,25 @@ impl Block {
         self.take(group, code, span)?;
         self.set(meaning);
         Ok(true)
+    }
+
+    /// Takes a cycle that RS274/NGC has not.
+    pub(crate) fn take_cycle(
+        &mut self,
+        motion: Motion,
+        code: Code,
+        span: Span,
+    ) -> Result<(), Fault> {
+        self.note_word();
+        self.take_motion(Meaning::Motion(motion), code, span)
+    }
+
+    /// Takes a tool length that is taken off.
+    pub(crate) fn take_against(&mut self, code: Code, span: Span) -> Result<(), Fault> {
+        self.note_word();
+        self.take(Group::ToolLength, code, span)?;
+        self.tool_length = Some(ToolLength::Against);
+        Ok(())
     }
 
     fn take(&mut self, group: Group, code: Code, span: Span) -> Result<(), Fault> {

@@ -15,6 +15,8 @@ pub enum Language {
     /// RS274/NGC, as LinuxCNC reads it.
     #[default]
     Ngc,
+    /// FANUC and Haas mills.
+    Fanuc,
     /// Sinumerik 840D.
     Sinumerik,
     /// Cutter location files (APT).
@@ -27,6 +29,7 @@ impl Language {
     pub fn name(self) -> &'static str {
         match self {
             Self::Ngc => "ngc",
+            Self::Fanuc => "fanuc",
             Self::Sinumerik => "840d",
             Self::CutterLocations => "cl",
         }
@@ -35,9 +38,14 @@ impl Language {
     /// The language of a name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        [Self::Ngc, Self::Sinumerik, Self::CutterLocations]
-            .into_iter()
-            .find(|language| language.name() == name)
+        [
+            Self::Ngc,
+            Self::Fanuc,
+            Self::Sinumerik,
+            Self::CutterLocations,
+        ]
+        .into_iter()
+        .find(|language| language.name() == name)
     }
 
     /// The language of a file by its name and its first lines; RS274/NGC unless another is certain.
@@ -48,6 +56,7 @@ impl Language {
     /// let of = |name, beginning: &str| Language::of(std::path::Path::new(name), beginning.as_bytes());
     /// assert_eq!(of("part.ngc", "G21"), Language::Ngc);
     /// assert_eq!(of("part.mpf", ""), Language::Sinumerik);
+    /// assert_eq!(of("part.nc", "%\nO0042\nIF [#1 EQ 2] GOTO 10\n"), Language::Fanuc);
     /// assert_eq!(of("part.txt", "PARTNO/A\nUNITS/MM\n"), Language::CutterLocations);
     /// ```
     #[must_use]
@@ -83,6 +92,8 @@ impl Language {
             Self::CutterLocations
         } else if first(&[";$PATH=", "%_N_"]) {
             Self::Sinumerik
+        } else if crate::fanuc::looks_like(beginning) {
+            Self::Fanuc
         } else {
             Self::Ngc
         }

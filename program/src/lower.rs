@@ -7,8 +7,9 @@ use crate::arcs::arc;
 use crate::block::Block;
 use crate::codes::{Group, Motion, Once, PathControl, Saving, Stop};
 use crate::compensation::Compensation;
+use crate::corners::Corner;
 use crate::cycle_words::CycleState;
-use crate::error::{Fault, Remark};
+use crate::error::{Fault, Notice, Remark};
 use crate::knot_spline::KnotSpline;
 use crate::lexer::Assignment;
 use crate::machining_error::MachiningError;
@@ -22,11 +23,14 @@ use crate::splines::Nurbs;
 use crate::tools::ToolTable;
 use crate::uses::{check, motion_of, motion_span};
 use std::collections::{BTreeSet, VecDeque};
-use toolglide_kinematics::{Feedrate, Move, Vector};
+use toolglide_kinematics::{Arc, Feedrate, Move, Vector};
 
 /// Moves that one block may make: more than any spline or cycle of a real program, and a bound on
 /// what waits for the planner.
 pub(crate) const MOST_MOVES: u32 = 100_000;
+
+/// Dwells beyond this are said, s: a minute.
+const LONG_DWELL: f64 = 60.0;
 
 /// Tools that are remembered as used.
 const MOST_TOOLS: usize = 10_000;
@@ -50,8 +54,14 @@ pub(crate) struct Lowering {
     /// Whether the axis words are those of the tool tip.
     pub(crate) tip: bool,
     pub(crate) compensation: Option<Compensation>,
-    /// Whether compensation begins on the normal of its second move, as for Sinumerik.
+    /// Whether compensation begins on the normal of its second move, as for Sinumerik and FANUC.
     pub(crate) leads_to_normal: bool,
+    /// Whether cycles keep their words and dwells as FANUC has it.
+    pub(crate) fanuc: bool,
+    /// A move whose corner waits for the next one.
+    pub(crate) corner: Option<Corner>,
+    /// Reference points of the machine beyond the second one: X Y Z in mm, A B C in degrees.
+    pub(crate) references: Vec<[f64; 6]>,
     pub(crate) nurbs: Option<Nurbs>,
     pub(crate) knot_spline: Option<KnotSpline>,
     /// What the next spline of two offsets continues, if it does.
@@ -83,6 +93,9 @@ impl Lowering {
             tip: false,
             compensation: None,
             leads_to_normal: false,
+            fanuc: false,
+            corner: None,
+            references: Vec::new(),
             nurbs: None,
             knot_spline: None,
             spline_end: None,
@@ -152,6 +165,9 @@ impl Lowering {
         if block.has(b'T') && self.tools_used.len() < MOST_TOOLS {
             self.tools_used.insert(self.modal.tool);
         }
+        if motion.is_some_and(Motion::is_cycle) {
+            self.mind_dwell(block, remarks);
+        }
         if block.is_plain() {
             // Most blocks of long programs are motion alone.
             if let Some(motion) = motion {
@@ -165,6 +181,7 @@ impl Lowering {
         self.set_up(block, remarks, moves)?;
         if block.once == Some(Once::Dwell) {
             let rest = self.dwell(block)?.from_line(line);
+            self.mind_dwell(block, remarks);
             self.emit(rest, moves)?;
         }
         self.once(block, moves)?;
@@ -190,6 +207,9 @@ impl Lowering {
 
     /// Makes the moves that wait for one that never comes.
     pub(crate) fn finish(&mut self, moves: &mut VecDeque<Move<3>>) -> Result<(), Fault> {
+        if self.corner.is_some() {
+            return Err(self.corner_left(Span::default()));
+        }
         if let Some(compensation) = &mut self.compensation {
             compensation.flush(moves);
         }
@@ -205,7 +225,7 @@ impl Lowering {
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         match motion {
-            Motion::Cycle(_) => self.cycle(block, motion, former, moves),
+            Motion::Cycle(_) | Motion::BackBore => self.cycle(block, motion, former, moves),
             Motion::Cubic | Motion::Quadratic => self.spline(block, motion, moves),
             Motion::Nurbs => self.control_point(block),
             Motion::Knots => self.knot_block(block, moves),
@@ -224,7 +244,14 @@ impl Lowering {
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
         let end = self.end(block)?;
+        if motion.is_arc() && !self.offsets.frame().is_even(self.modal.plane.axes()) {
+            let reason = MachiningError::UnevenArc;
+            return Err(Fault::new(motion_span(block), reason.into()));
+        }
         if motion.is_arc() && self.turns_arcs() {
+            if self.corner.is_some() {
+                return Err(self.corner_left(motion_span(block)));
+            }
             return self.turned_arc(block, motion, end, moves);
         }
         let start = self.position;
@@ -248,12 +275,30 @@ impl Lowering {
             PathControl::ExactStop => step.with_exact_stop(),
             PathControl::Blend => step,
         };
+        let (step, start) = match self.corner.take() {
+            Some(corner) => self.break_corner(corner, step, motion_span(block), moves)?,
+            None => (step, start),
+        };
+        match block.corner {
+            Some(corner) => self.hold_corner(corner, step, start),
+            None => self.hand_on(step, start, motion_span(block), moves),
+        }
+    }
+
+    /// Hands a move of the program on, through cutter compensation where it is on.
+    pub(crate) fn hand_on(
+        &mut self,
+        step: Move<3>,
+        start: Vector<3>,
+        span: Span,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
         match &mut self.compensation {
             None => moves.push_back(step),
             Some(compensation) => {
                 let more = compensation
                     .push(step, start, moves)
-                    .map_err(|reason| Fault::new(motion_span(block), reason))?;
+                    .map_err(|reason| Fault::new(span, reason))?;
                 if !more {
                     self.compensation = None;
                 }
@@ -268,6 +313,9 @@ impl Lowering {
         step: Move<3>,
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
+        if self.corner.is_some() {
+            return Err(self.corner_left(Span::default()));
+        }
         match &mut self.compensation {
             Some(compensation) => compensation.pass(step, moves),
             None => moves.push_back(step),
@@ -290,12 +338,75 @@ impl Lowering {
                 MachiningError::TooManyMoves { bound }.into(),
             ));
         }
+        if self.corner.is_some() {
+            return Err(self.corner_left(span));
+        }
         let there = self.offsets.on_machine(end);
         (self.program, self.position) = (end, there);
         let step = Move::line_to(there, feedrate, self.modal.tolerance)
             .map_err(|error| Fault::new(span, Reason::Path(error)))?;
         moves.push_back(step.from_line(self.line));
         Ok(())
+    }
+
+    /// A circular move about a centre in the plane XY of the program, without cutter compensation; which
+    /// way is true for counter-clockwise.
+    pub(crate) fn go_round(
+        &mut self,
+        (end, center): (Vector<3>, Vector<3>),
+        (counter_clockwise, feedrate): (bool, Feedrate),
+        span: Span,
+        moves: &mut VecDeque<Move<3>>,
+    ) -> Result<(), Fault> {
+        if moves.len() >= MOST_MOVES as usize {
+            let bound = MOST_MOVES;
+            let reason = MachiningError::TooManyMoves { bound };
+            return Err(Fault::new(span, reason.into()));
+        }
+        let (start, there) = (self.position, self.offsets.on_machine(end));
+        let center = self.offsets.on_machine(center);
+        let turned = counter_clockwise != self.offsets.frame().mirrors([0, 1]);
+        let arc = Arc::about(start, there, center, [0, 1], turned, 0)
+            .map_err(|error| Fault::new(span, Reason::Path(error)))?;
+        (self.program, self.position) = (end, there);
+        let step = Move::arc(arc, feedrate, self.modal.tolerance);
+        moves.push_back(step.from_line(self.line));
+        Ok(())
+    }
+
+    /// A reference point of the machine, X Y Z in mm and A B C in degrees; that of `G28` is number 0.
+    pub(crate) fn reference(&self, index: usize) -> Option<[f64; 6]> {
+        let stored = |first: u32| {
+            let known = self.references.get(index).copied().unwrap_or_default();
+            let mut point = known;
+            for (axis, number) in (first..).take(3).enumerate() {
+                point[axis] = self.parameters.get(number);
+            }
+            point
+        };
+        match index {
+            0 => Some(stored(5161)),
+            1 => Some(stored(5181)),
+            _ => self.references.get(index).copied(),
+        }
+    }
+
+    /// Sets the offset of all coordinate systems, mm.
+    pub(crate) fn set_common(&mut self, common: Vector<3>) {
+        self.offsets.set_common(common);
+        self.program = self.offsets.in_program(self.position);
+    }
+
+    /// Says of a dwell that is so long that its unit may be meant otherwise.
+    fn mind_dwell(&self, block: &Block, remarks: &mut Vec<Remark>) {
+        let milliseconds = self.fanuc;
+        if let Some(seconds) = block.get(b'P').filter(|&seconds| seconds > LONG_DWELL) {
+            let notice = Notice::LongDwell {
+                seconds,
+                milliseconds,
+            };
+            remarks.push((block.span(b'P'), notice));
+        }
     }
 
     fn save(&mut self, saving: Saving, block: &Block) -> Result<(), Fault> {

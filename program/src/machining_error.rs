@@ -77,6 +77,15 @@ pub enum MachiningError {
         /// Whether it is a lead-in or a lead-out.
         begins_or_ends: &'static str,
     },
+    /// A corner that cannot be broken by `,R` or `,C`.
+    #[error("a corner broken by ,R or ,C needs {what}")]
+    CornerNeeds {
+        /// What it needs.
+        what: &'static str,
+    },
+    /// Factors of scaling that would make an arc an ellipse.
+    #[error("an arc is not possible in a plane whose axes are scaled unequally")]
+    UnevenArc,
     /// A tool that is too large for an arc.
     #[error("the tool of radius {radius} mm does not fit inside the arc of radius {arc} mm")]
     ToolTooLarge {

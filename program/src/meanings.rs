@@ -122,6 +122,27 @@ fn unread_preparatory(tenths: u16) -> Unread {
         700..=720 | 760 => "cycles of a lathe",
         950 => "feed for each turn of the spindle",
         960 => return Unread::Harmless("constant surface speed"),
+        90
+        | 120
+        | 130
+        | 270
+        | 290
+        | 310
+        | 440
+        | 500..=511
+        | 541
+        | 600
+        | 620
+        | 630
+        | 650..=690
+        | 1030
+        | 1100..=1290
+        | 1500
+        | 1540
+        | 1870
+        | 2340
+        | 2540
+        | 2550 => "a code of FANUC or Haas; --dialect fanuc reads programs for them",
         _ => return Unread::Unknown,
     })
 }

@@ -28,6 +28,8 @@ pub(crate) struct Offsets {
     origin: Vector<3>,
     shift: Vector<3>,
     tool: Vector<3>,
+    /// Offset of all coordinate systems.
+    common: Vector<3>,
     frame: Frame,
     /// The coordinate system in force, from 1. Its parameters count from when it is selected.
     system: u8,
@@ -44,6 +46,7 @@ impl Offsets {
             origin: Vector::zeros(),
             shift: Vector::zeros(),
             tool: Vector::zeros(),
+            common: Vector::zeros(),
             frame: Frame::NONE,
             system: 1,
             rotation: 0.0,
@@ -58,7 +61,8 @@ impl Offsets {
         if self.none {
             return point;
         }
-        self.turned(self.frame.out(point) + self.shift, self.sine) + self.origin + self.tool
+        let turned = self.turned(self.frame.out(point) + self.shift, self.sine);
+        turned + self.origin + self.common + self.tool
     }
 
     /// A point of the machine in the program.
@@ -66,7 +70,7 @@ impl Offsets {
         if self.none {
             return point;
         }
-        let turned = self.turned(point - self.tool - self.origin, -self.sine);
+        let turned = self.turned(point - self.tool - self.common - self.origin, -self.sine);
         self.frame.back(turned - self.shift)
     }
 
@@ -93,6 +97,22 @@ impl Offsets {
     pub(crate) fn set_frame(&mut self, frame: Frame) {
         self.frame = frame;
         self.look();
+    }
+
+    /// The offset of all coordinate systems.
+    pub(crate) fn common(&self) -> Vector<3> {
+        self.common
+    }
+
+    pub(crate) fn set_common(&mut self, common: Vector<3>) {
+        self.common = common;
+        self.look();
+    }
+
+    /// Takes an origin that belongs to none of the numbered systems, mm.
+    pub(crate) fn take_origin(&mut self, origin: Vector<3>) {
+        self.system = 0;
+        self.set_origin(origin, 0.0);
     }
 
     pub(crate) fn tool(&self) -> Vector<3> {
@@ -169,6 +189,7 @@ impl Offsets {
             && self.frame == Frame::NONE
             && self.origin == zero
             && self.shift == zero
+            && self.common == zero
             && self.tool == zero;
     }
 }

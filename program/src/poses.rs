@@ -48,7 +48,7 @@ impl<R: BufRead> Poses<R> {
             Language::CutterLocations => {
                 Source::Locations(Box::new(CutterLocations::new(reader, file, settings)))
             }
-            Language::Sinumerik | Language::Ngc => {
+            Language::Sinumerik | Language::Fanuc | Language::Ngc => {
                 let program = Program::new(reader, file, settings).in_language(language);
                 Source::Axes(Box::new(AxisWords::new(program)))
             }
@@ -73,6 +73,16 @@ impl<R: BufRead> Poses<R> {
     ) -> Self {
         if let Source::Axes(axes) = &mut self.source {
             axes.program.find_subroutines(find);
+        }
+        self
+    }
+
+    /// The same program, for a machine with these reference points, as
+    /// [`Program::with_reference_points`].
+    #[must_use]
+    pub fn with_reference_points(mut self, points: &[[f64; 6]]) -> Self {
+        if let Source::Axes(axes) = &mut self.source {
+            axes.program.set_reference_points(points);
         }
         self
     }

@@ -7,6 +7,7 @@ use crate::block::{Block, O_WORDS};
 use crate::codes::{Group, Subprogram};
 use crate::control::o_word;
 use crate::error::{Fault, ProgramError, Remark, Warning};
+use crate::fanuc::Fanuc;
 use crate::flow::Flow;
 use crate::lexer::check_text;
 use crate::lines::LONGEST_LINE;
@@ -42,7 +43,7 @@ pub struct Program<R> {
     pub(crate) block: Block,
     pub(crate) lowering: Lowering,
     pub(crate) waiting: VecDeque<Move<3>>,
-    remarks: Vec<Remark>,
+    pub(crate) remarks: Vec<Remark>,
     pub(crate) warnings: Vec<Warning>,
     pub(crate) more_warnings: u64,
     pub(crate) blocks: u64,
@@ -52,6 +53,7 @@ pub struct Program<R> {
     aftermath: Aftermath,
     repeated_refusals: u32,
     pub(crate) sinumerik: Option<Sinumerik>,
+    pub(crate) fanuc: Option<Box<Fanuc>>,
 }
 
 impl<R: BufRead> Program<R> {
@@ -72,26 +74,37 @@ impl<R: BufRead> Program<R> {
             aftermath: Aftermath::default(),
             repeated_refusals: 0,
             sinumerik: None,
+            fanuc: None,
         }
+    }
+
+    /// Ends the program.
+    pub(crate) fn end(&mut self) -> Result<(), Fault> {
+        self.ended = true;
+        self.lowering.finish(&mut self.waiting)
+    }
+
+    /// A refusal behind which nothing can be read.
+    pub(crate) fn unreadable(&mut self, reason: Reason) -> Fault {
+        let at = match reason {
+            Reason::LineTooLong { .. } => LONGEST_LINE,
+            _ => 0,
+        };
+        self.past_refusals = false;
+        Fault::new(Span::new(at, at), reason)
     }
 
     /// Reads one line.
     fn line(&mut self) -> Result<(), Fault> {
+        if let Some(mut fanuc) = self.fanuc.take() {
+            let outcome = fanuc.line(self);
+            self.fanuc = Some(fanuc);
+            return outcome;
+        }
         match self.flow.advance() {
             Ok(true) => {}
-            Ok(false) => {
-                self.ended = true;
-                return self.lowering.finish(&mut self.waiting);
-            }
-            Err(reason) => {
-                let at = match reason {
-                    Reason::LineTooLong { .. } => LONGEST_LINE,
-                    _ => 0,
-                };
-                // Behind these nothing can be read.
-                self.past_refusals = false;
-                return Err(Fault::new(Span::new(at, at), reason));
-            }
+            Ok(false) => return self.end(),
+            Err(reason) => return Err(self.unreadable(reason)),
         }
         if let Err(endless) = self.flow.check_progress(&self.lowering) {
             self.past_refusals = false;

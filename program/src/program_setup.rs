@@ -2,6 +2,8 @@
 //!
 //! Not here: reading.
 
+use crate::codes::Motion;
+use crate::fanuc::Fanuc;
 use crate::language::Language;
 use crate::program::Program;
 use crate::sinumerik::Sinumerik;
@@ -52,13 +54,29 @@ impl<R: BufRead> Program<R> {
         self
     }
 
-    /// The same program, in a language of axis words: RS274/NGC, as without this, or Sinumerik.
+    /// The same program, in a language of axis words: RS274/NGC, as without this, Sinumerik, or FANUC.
     #[must_use]
     pub fn in_language(mut self, language: Language) -> Self {
         let jumps = language == Language::Sinumerik;
+        let fanuc = language == Language::Fanuc;
         self.sinumerik = jumps.then(Sinumerik::default);
-        self.lowering.leads_to_normal = jumps;
-        self.flow.tape = jumps.then(|| Tape::new(&self.flow.file));
+        self.lowering.leads_to_normal = jumps || fanuc;
+        self.flow.tape = (jumps || fanuc).then(|| Tape::new(&self.flow.file));
+        self.fanuc = fanuc.then(|| Box::new(Fanuc::new()));
+        if fanuc {
+            self.lowering.fanuc = true;
+            // What is in force when such a control is turned on.
+            self.lowering.modal.motion = Motion::Rapid;
+            self.lowering.modal.return_to_start = true;
+        }
+        self
+    }
+
+    /// The same program, for a machine with these reference points: X Y Z in mm and A B C in degrees of the
+    /// first one (`G28`), the second (`G30`), and those of `G30 P3` and `P4`.
+    #[must_use]
+    pub fn with_reference_points(mut self, points: &[[f64; 6]]) -> Self {
+        self.set_reference_points(points);
         self
     }
 
@@ -75,6 +93,15 @@ impl<R: BufRead> Program<R> {
         find: impl Fn(&str) -> std::io::Result<Option<Vec<u8>>> + Send + 'static,
     ) {
         self.flow.find = Some(Box::new(find));
+    }
+
+    pub(crate) fn set_reference_points(&mut self, points: &[[f64; 6]]) {
+        for (first, point) in [5161, 5181].into_iter().zip(points) {
+            for (number, &value) in (first..).zip(&point[..3]) {
+                self.lowering.parameters.put(number, value);
+            }
+        }
+        self.lowering.references = points.to_vec();
     }
 
     pub(crate) fn set_past_refusals(&mut self) {

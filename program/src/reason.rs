@@ -198,6 +198,18 @@ pub enum Reason {
         /// Largest allowed.
         most: u32,
     },
+    /// A quantity must lie between two bounds.
+    #[error("{quantity} is {value}, but must be from {least} to {most}")]
+    OutOfBounds {
+        /// Which quantity.
+        quantity: &'static str,
+        /// What was written.
+        value: f64,
+        /// Smallest allowed.
+        least: f64,
+        /// Largest allowed.
+        most: f64,
+    },
     /// A dwell longer than a dwell may be.
     #[error("dwell is {value} s, but may be {bound} s at most")]
     DwellTooLong {

@@ -58,6 +58,28 @@ impl Tape {
         Ok(Some(again))
     }
 
+    /// Reads one more line behind those that are kept, without going there; false at the end.
+    pub(crate) fn read_on<R: BufRead>(&mut self, file: &mut Lines<R>) -> Result<bool, Reason> {
+        if !file.advance()? {
+            return Ok(false);
+        }
+        if !self.lines.push(file.text()) {
+            let bound = LONGEST_RECORDING;
+            return Err(FlowError::TooLong { bound }.into());
+        }
+        Ok(true)
+    }
+
+    /// A line that is kept, empty where there is none.
+    pub(crate) fn line(&self, index: usize) -> &[u8] {
+        self.lines.line(index)
+    }
+
+    /// How many lines are kept.
+    pub(crate) fn len(&self) -> usize {
+        self.lines.len()
+    }
+
     /// The line being run.
     pub(crate) fn text(&self) -> &[u8] {
         self.lines.line(self.at)

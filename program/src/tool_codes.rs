@@ -97,6 +97,10 @@ impl Lowering {
                 self.tool_of(block, b'H', Group::ToolLength, remarks)?
                     .offset
             }
+            ToolLength::Against => {
+                let tool = self.tool_of(block, b'H', Group::ToolLength, remarks)?;
+                -tool.offset
+            }
             ToolLength::Given => {
                 if block.first_of(&AXES).is_none() {
                     return Err(companion(block, Group::ToolLength, "an axis word"));
@@ -196,8 +200,9 @@ impl Lowering {
             _ => self.tool_of(block, b'D', group, remarks)?.diameter,
         };
         let radius = 0.5 * diameter.abs();
-        // A tool of negative diameter goes on the other side.
-        let left = left == (diameter >= 0.0);
+        let mirrored = self.offsets.frame().mirrors(self.modal.plane.axes());
+        // A tool of negative diameter goes on the other side, as does a mirrored path.
+        let left = (left == (diameter >= 0.0)) != mirrored;
         let at = self
             .compensation
             .take()

@@ -19,7 +19,11 @@ impl Lowering {
     /// Whether the plane of arcs is none of the machine.
     pub(crate) fn turns_arcs(&self) -> bool {
         let upright = self.modal.plane != Plane::Xy && self.offsets.rotation() != 0.0;
-        upright || !self.offsets.frame().is_straight()
+        upright
+            || !self
+                .offsets
+                .frame()
+                .keeps_arcs_across(self.modal.plane.normal())
     }
 
     /// An arc in a plane that is none of the machine, as chords.

@@ -25,6 +25,7 @@ impl Motion {
             Self::Knots => b"PKR",
             Self::Cycle(73 | 83) => b"RLQP",
             Self::Cycle(81 | 85) => b"RL",
+            Self::Cycle(76) | Self::BackBore => b"RLPQIJ",
             Self::Cycle(87) => b"RLIJK",
             Self::Cycle(_) => b"RLP",
         };
@@ -74,7 +75,13 @@ pub(crate) fn motion_of(block: &Block, mode: Motion) -> Result<Option<Motion>, F
                 return Ok(None);
             };
             if block.once == Some(Once::Dwell) {
-                return Err(unused(block, letter));
+                if !matches!(letter, b'X' | b'U') || block.has(b'P') {
+                    return Err(unused(block, letter));
+                }
+                let word = char::from(letter).to_string().into();
+                let what = "the duration of a dwell is P here; --dialect fanuc reads X and U";
+                let reason = Reason::WordNotSupported { word, what };
+                return Err(Fault::new(block.span(letter), reason));
             }
             if mode == Motion::Off {
                 let reason = Reason::NoMotionMode {
@@ -149,7 +156,9 @@ fn users(block: &Block, motion: Option<Motion>, letter: u8) -> impl Iterator<Ite
     };
     let length = match block.tool_length {
         None if block.tool_tip == Some(true) => group(Group::ToolLength, b"H"),
-        Some(ToolLength::Table | ToolLength::Added) => group(Group::ToolLength, b"H"),
+        Some(ToolLength::Table | ToolLength::Added | ToolLength::Against) => {
+            group(Group::ToolLength, b"H")
+        }
         _ => None,
     };
     let outside = group(Group::Outside, b"PQLER").or(group(Group::Overrides, b"P"));

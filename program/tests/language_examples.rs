@@ -6,6 +6,7 @@ mod common;
 
 use common::settings;
 use std::path::PathBuf;
+use toolglide_kinematics::Vector;
 use toolglide_program::{Language, Poses, Program, ToolTable};
 
 fn folder() -> PathBuf {
@@ -68,6 +69,72 @@ fn programs_of_rotary_axes_are_read_as_poses() {
         let count = read.unwrap_or_else(|error| panic!("{error}")).len();
         assert_eq!(count, expected, "{file}");
     }
+}
+
+/// Ends of the moves of a program that is known for one of FANUC or Haas by itself.
+fn fanuc_ends(file: &str) -> Vec<Vector<3>> {
+    let text = text(file);
+    let language = Language::of(&PathBuf::from(file), text.as_bytes());
+    assert_eq!(language, Language::Fanuc, "{file}");
+    let program = Program::new(text.as_bytes(), file, settings()).in_language(language);
+    let mut at = Vector::zeros();
+    let ends = program.map(|step| {
+        at = step.unwrap_or_else(|error| panic!("{error}")).end(at);
+        at
+    });
+    ends.collect()
+}
+
+#[test]
+fn the_macros_of_fanuc_cut_holes_a_pocket_and_notches() {
+    let ends = fanuc_ends("fanuc_macro.nc");
+    let at_depth = |depth: f64| {
+        let found = ends.iter().filter(move |end| (end[2] - depth).abs() < 1e-9);
+        found.copied().collect::<Vec<_>>()
+    };
+    let holes = at_depth(-8.0);
+    assert_eq!(holes.len(), 6, "holes");
+    for (hole, degrees) in holes
+        .iter()
+        .zip([15.0_f64, 75.0, 135.0, 195.0, 255.0, 315.0])
+    {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let off = (hole[0] - 30.0 * cosine).hypot(hole[1] - 30.0 * sine);
+        assert!(off < 1e-9, "{hole}");
+    }
+    // Three circles a level, each reached by a line, and back to the centre; entered from above.
+    for depth in [-2.0, -4.0, -6.0] {
+        assert_eq!(at_depth(depth).len(), 8, "level {depth}");
+    }
+    // In, two sides with their corners broken, and out, in four directions.
+    let notches = at_depth(-1.0);
+    assert_eq!(notches.len(), 4 * 6, "notches");
+    let turned: Vec<_> = (0..4).map(|turn| notches[6 * turn + 1]).collect();
+    for (point, expected) in
+        turned
+            .iter()
+            .zip([[42.0, -5.0], [5.0, 42.0], [-42.0, 5.0], [-5.0, -42.0]])
+    {
+        let off = (point[0] - expected[0]).hypot(point[1] - expected[1]);
+        assert!(off < 1e-9, "{point}");
+    }
+}
+
+#[test]
+fn a_program_for_haas_is_read_as_its_control_does() {
+    let ends = fanuc_ends("haas.nc");
+    let last = ends.last().unwrap();
+    assert!(
+        (last - Vector::<3>::new(30.0, 30.0, 0.0)).norm() < 1e-9,
+        "{last}"
+    );
+    let holes: Vec<f64> = ends
+        .iter()
+        .filter(|end| (end[2] + 6.0).abs() < 1e-9)
+        .map(|end| end[1])
+        .collect();
+    // A dwell ends where it began.
+    assert_eq!(holes, [-20.0, -20.0, 0.0, 0.0, 20.0, 20.0], "holes");
 }
 
 #[test]

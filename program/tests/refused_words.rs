@@ -9,8 +9,8 @@ use toolglide_program::{Program, Reason};
 #[test]
 fn codes_that_are_not_read_are_named() {
     for code in [
-        "G6.1", "G7", "G15", "G17.1", "G33", "G38.2", "G43.4", "G76", "G95", "G96", "M47", "M97",
-        "M428",
+        "G6.1", "G7", "G12", "G15", "G17.1", "G33", "G38.2", "G43.4", "G65", "G68", "G76", "G95",
+        "G96", "M47", "M97", "M428",
     ] {
         let text = format!("G21 (m)\nN5 {code} X1");
         refuses!(&text, 2, 4, code, Reason::NotSupported { .. });
@@ -25,7 +25,7 @@ fn codes_that_are_not_read_are_named() {
 
 #[test]
 fn codes_that_nobody_knows_are_refused() {
-    for code in ["G100", "G12", "G64.5", "M12", "M206", "M999"] {
+    for code in ["G100", "G14", "G64.5", "M12", "M206", "M999"] {
         refuses!(
             &format!("G0 X1 {code}"),
             1,

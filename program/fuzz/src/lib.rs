@@ -34,22 +34,32 @@ pub fn read(text: &[u8]) {
     let way = text.iter().fold(0_u32, |sum, &byte| {
         sum.wrapping_mul(31).wrapping_add(byte.into())
     });
-    match way % 5 {
-        0 | 1 => read_moves(text, false),
-        2 => read_moves(text, true),
+    match way % 7 {
+        0 | 1 => read_moves(text, false, Language::Ngc),
+        2 => read_moves(text, true, Language::Ngc),
+        4 => read_moves(text, false, Language::Fanuc),
+        5 => read_moves(text, true, Language::Fanuc),
         3 => {
             read_poses(text, Language::Ngc);
             read_poses(text, Language::Sinumerik);
+            read_poses(text, Language::Fanuc);
         }
         _ => read_poses(text, Language::CutterLocations),
     }
 }
 
-fn read_moves(text: &[u8], lenient: bool) {
+fn read_moves(text: &[u8], lenient: bool, language: Language) {
+    // Recognising a language ends, whatever the text.
+    let _ = Language::of(std::path::Path::new("fuzz"), text);
     let mut program = Program::new(text, "fuzz", settings(lenient))
+        .in_language(language)
         .with_tools(tools())
         .with_subroutines(|name| {
-            Ok((name == "sub").then(|| b"o<sub> sub\nG1X1\no<sub> endsub".to_vec()))
+            Ok(match name {
+                "sub" => Some(b"o<sub> sub\nG1X1\no<sub> endsub".to_vec()),
+                "O0003" => Some(b"%\nO3\nG1X#1\nM99\n%".to_vec()),
+                _ => None,
+            })
         });
     if lenient {
         program = program

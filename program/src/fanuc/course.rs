@@ -1,0 +1,468 @@
+//! Finds which line of a FANUC program comes next: jumps, loops, subprograms.
+//!
+//! Source: the operator's manuals of FANUC and Haas. The lines of the file stand on the tape of the flow, those
+//! of files beside it in recordings. Not here: what a line says.
+
+use crate::fanuc::labels::{Labels, blanks, is_block, program_number, stands_loop};
+use crate::flow::Flow;
+use crate::flow_error::FlowError;
+use crate::parameters::DEEPEST_CALL;
+use crate::reason::Reason;
+use crate::recording::Recording;
+use std::collections::BTreeMap;
+use std::io::BufRead;
+use std::sync::Arc;
+
+/// Lines before the first `%` that are looked at.
+const LONGEST_LEADER: usize = 200;
+
+/// A text with lines: 0 is the file itself, others are files beside it.
+pub(crate) type Text = usize;
+
+/// What called a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Nothing.
+    Main,
+    /// `M98` or `M97`.
+    Subprogram,
+    /// `G65`.
+    Macro,
+    /// A block with motion, after `G66`.
+    Modal,
+}
+
+/// A loop that is running, by the lines of its head and its end.
+#[derive(Clone, Copy, Debug)]
+struct Loop {
+    number: u32,
+    head: usize,
+    end: usize,
+}
+
+/// A program that is running.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    pub(crate) kind: Kind,
+    pub(crate) number: u32,
+    text: Text,
+    /// First line of the program, and the one that a call begins with.
+    start: usize,
+    entry: usize,
+    next: usize,
+    pub(crate) left: u32,
+    loops: Vec<Loop>,
+}
+
+/// Where a program is found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    text: Text,
+    start: usize,
+}
+
+/// What the next line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Next {
+    Line,
+    EndOfFile,
+}
+
+/// The programs that run, and what is known of their lines.
+#[derive(Debug)]
+pub(crate) struct Course {
+    pub(crate) frames: Vec<Frame>,
+    files: Vec<Arc<Recording>>,
+    by_name: BTreeMap<u32, Text>,
+    /// First lines of the programs of the file, once one was called.
+    programs: Option<BTreeMap<u32, usize>>,
+    labels: BTreeMap<(Text, usize), Labels>,
+    /// Ends of loops by the line of their head.
+    ends: BTreeMap<(Text, usize), usize>,
+}
+
+impl Course {
+    pub(crate) fn new() -> Self {
+        Self {
+            frames: vec![Frame {
+                kind: Kind::Main,
+                number: 0,
+                text: 0,
+                start: 0,
+                entry: 0,
+                next: 0,
+                left: 1,
+                loops: Vec::new(),
+            }],
+            files: Vec::new(),
+            by_name: BTreeMap::new(),
+            programs: None,
+            labels: BTreeMap::new(),
+            ends: BTreeMap::new(),
+        }
+    }
+
+    fn top(&mut self) -> Option<&mut Frame> {
+        self.frames.last_mut()
+    }
+
+    /// Whether the main program runs.
+    pub(crate) fn in_main(&self) -> bool {
+        self.frames.len() <= 1
+    }
+
+    /// Index of the line being run.
+    fn here(&self) -> usize {
+        self.frames
+            .last()
+            .map_or(0, |frame| frame.next.saturating_sub(1))
+    }
+
+    /// Goes to the next line of the program that runs.
+    pub(crate) fn advance<R: BufRead>(&mut self, flow: &mut Flow<R>) -> Result<Next, Reason> {
+        let held = self.frames.len() > 1 || self.frames.iter().any(|frame| !frame.loops.is_empty());
+        let Some(frame) = self.frames.last_mut() else {
+            return Ok(Next::EndOfFile);
+        };
+        if frame.text > 0 {
+            let Some(file) = self.files.get(frame.text - 1) else {
+                return Ok(Next::EndOfFile);
+            };
+            if frame.next >= file.len() {
+                return Ok(Next::EndOfFile);
+            }
+            flow.current = Some((Arc::clone(file), frame.next));
+            frame.next += 1;
+            flow.step()?;
+            return Ok(Next::Line);
+        }
+        flow.current = None;
+        let Some(tape) = &mut flow.tape else {
+            return Ok(Next::EndOfFile);
+        };
+        tape.looking = held;
+        tape.go_before(frame.next);
+        let Some(again) = tape.advance(&mut flow.lines)? else {
+            return Ok(Next::EndOfFile);
+        };
+        if tape.index() < frame.next {
+            // The lines before were forgotten.
+            self.labels.clear();
+            self.ends.clear();
+            frame.start = 0;
+        }
+        frame.next = tape.index() + 1;
+        if again {
+            flow.step()?;
+        }
+        Ok(Next::Line)
+    }
+
+    /// Passes over text before the first `%`, unless a block is in it.
+    pub(crate) fn skip_leader<R: BufRead>(&mut self, flow: &mut Flow<R>) -> Result<(), Reason> {
+        let opening = self.look(flow, 0, 0, |index, line| {
+            let opens = line.get(blanks(line, 0)) == Some(&b'%');
+            if opens {
+                return Some(Some(index));
+            }
+            (index >= LONGEST_LEADER || is_block(line)).then_some(None)
+        })?;
+        if let (Some(Some(index)), Some(frame)) = (opening, self.top()) {
+            frame.next = index;
+        }
+        Ok(())
+    }
+
+    /// Notes that the line being run is the first one of the main program.
+    pub(crate) fn begin_main(&mut self, number: u32) {
+        let here = self.here();
+        if let Some(frame) = self.top() {
+            (frame.number, frame.start, frame.entry) = (number, here, here);
+        }
+    }
+
+    /// Whether the line being run is the first one of the program that runs.
+    pub(crate) fn is_first(&self) -> bool {
+        let here = self.here();
+        self.frames.last().is_some_and(|frame| frame.start == here)
+    }
+
+    /// Looks at lines of a text from an index on until one gives something.
+    fn look<R: BufRead, T>(
+        &self,
+        flow: &mut Flow<R>,
+        text: Text,
+        from: usize,
+        mut is: impl FnMut(usize, &[u8]) -> Option<T>,
+    ) -> Result<Option<T>, Reason> {
+        if text > 0 {
+            let Some(file) = self.files.get(text - 1) else {
+                return Ok(None);
+            };
+            return Ok((from..file.len()).find_map(|index| is(index, file.line(index))));
+        }
+        let Some(tape) = &mut flow.tape else {
+            return Ok(None);
+        };
+        let mut index = from;
+        loop {
+            if index >= tape.len() && !tape.read_on(&mut flow.lines)? {
+                return Ok(None);
+            }
+            if let Some(found) = is(index, tape.line(index)) {
+                return Ok(Some(found));
+            }
+            index += 1;
+        }
+    }
+
+    /// Goes on with the block `number` of the program that runs.
+    pub(crate) fn jump<R: BufRead>(
+        &mut self,
+        flow: &mut Flow<R>,
+        number: u32,
+    ) -> Result<(), Reason> {
+        let Some((text, start)) = self.frames.last().map(|frame| (frame.text, frame.start)) else {
+            return Ok(());
+        };
+        let from = self.here();
+        let target = self.label(flow, Found { text, start }, number, from)?;
+        if let Some(frame) = self.top() {
+            frame
+                .loops
+                .retain(|one| (one.head + 1..=one.end).contains(&target));
+            frame.next = target;
+        }
+        Ok(())
+    }
+
+    /// The line of the block `number` of a program: the next one behind `from`, or else the first.
+    fn label<R: BufRead>(
+        &mut self,
+        flow: &mut Flow<R>,
+        program: Found,
+        number: u32,
+        from: usize,
+    ) -> Result<usize, Reason> {
+        let key = (program.text, program.start);
+        if !self.labels.contains_key(&key) {
+            let mut labels = Labels::default();
+            self.look(flow, program.text, program.start, |index, line| {
+                let ends = labels.take(index, index == program.start, line);
+                ends.then_some(())
+            })?;
+            self.labels.insert(key, labels);
+        }
+        let found = self
+            .labels
+            .get(&key)
+            .and_then(|labels| labels.find(number, from));
+        found.ok_or_else(|| {
+            let label = format!("N{number}").into();
+            FlowError::NoTarget { label }.into()
+        })
+    }
+
+    /// Begins or passes over the loop whose head is being run; the end of it must be there.
+    pub(crate) fn enter_loop<R: BufRead>(
+        &mut self,
+        flow: &mut Flow<R>,
+        number: u32,
+        runs: bool,
+    ) -> Result<(), Reason> {
+        let head = self.here();
+        let text = self.frames.last().map_or(0, |frame| frame.text);
+        let end = match self.ends.get(&(text, head)) {
+            Some(end) => *end,
+            None => {
+                let mut inner = false;
+                let found = self.look(flow, text, head + 1, |index, line| {
+                    if program_number(line).is_some() {
+                        return Some(None);
+                    }
+                    match stands_loop(line) {
+                        Some((true, other)) if other == number => {
+                            inner = true;
+                            Some(None)
+                        }
+                        Some((false, other)) if other == number => Some(Some(index)),
+                        _ => None,
+                    }
+                })?;
+                let Some(end) = found.flatten() else {
+                    return Err(FlowError::LoopNotClosed { number, inner }.into());
+                };
+                self.ends.insert((text, head), end);
+                end
+            }
+        };
+        let Some(frame) = self.top() else {
+            return Ok(());
+        };
+        frame.loops.retain(|one| one.head != head);
+        if runs {
+            frame.loops.push(Loop { number, head, end });
+        } else {
+            frame.next = end + 1;
+        }
+        Ok(())
+    }
+
+    /// Goes back to the head of the loop that the line being run ends.
+    pub(crate) fn end_loop(&mut self, number: u32) -> Result<(), Reason> {
+        let here = self.here();
+        let open = self.top().and_then(|frame| {
+            let inner = frame
+                .loops
+                .iter()
+                .rposition(|one| one.number == number && one.end == here)?;
+            frame.loops.truncate(inner + 1);
+            frame.loops.last().copied().map(|found| (frame, found.head))
+        });
+        let Some((frame, head)) = open else {
+            return Err(FlowError::LoopNotOpen { number }.into());
+        };
+        frame.next = head;
+        Ok(())
+    }
+
+    /// The program `number`: in the file, or in one beside it.
+    pub(crate) fn find<R: BufRead>(
+        &mut self,
+        flow: &mut Flow<R>,
+        number: u32,
+        outside: bool,
+    ) -> Result<Option<Found>, Reason> {
+        if !outside {
+            if self.programs.is_none() {
+                let mut programs = BTreeMap::new();
+                self.look(flow, 0, 0, |index, line| {
+                    if let Some(number) = program_number(line) {
+                        programs.entry(number).or_insert(index);
+                    }
+                    None::<()>
+                })?;
+                self.programs = Some(programs);
+            }
+            let start = self
+                .programs
+                .as_ref()
+                .and_then(|programs| programs.get(&number));
+            if let Some(&start) = start {
+                return Ok(Some(Found { text: 0, start }));
+            }
+        }
+        self.load(flow, number)
+    }
+
+    /// A program in a file of its own.
+    fn load<R: BufRead>(
+        &mut self,
+        flow: &mut Flow<R>,
+        number: u32,
+    ) -> Result<Option<Found>, Reason> {
+        if let Some(&text) = self.by_name.get(&number) {
+            let start = self.first_line(text);
+            return Ok(Some(Found { text, start }));
+        }
+        let names = [
+            format!("O{number:04}"),
+            format!("O{number:05}"),
+            format!("o{number:04}"),
+            format!("o{number:05}"),
+            format!("{number:04}"),
+            format!("{number}"),
+        ];
+        let Some(find) = &flow.find else {
+            return Ok(None);
+        };
+        for name in names {
+            let bad = |message: String| {
+                let (label, message) = (name.as_str().into(), message.into());
+                Reason::from(FlowError::BadFile { label, message })
+            };
+            let text = find(&name).map_err(|error| bad(format!("cannot be read: {error}")))?;
+            let Some(text) = text else {
+                continue;
+            };
+            let file: Arc<str> = Arc::from(name.as_str());
+            let mut recording = Recording::new(&file, 1);
+            recording.outer = Some(flow.line());
+            for line in text.split(|&byte| byte == b'\n') {
+                let line = line.strip_suffix(b"\r").unwrap_or(line);
+                if !recording.push(line) {
+                    return Err(bad("is too long".to_owned()));
+                }
+            }
+            self.files.push(Arc::new(recording));
+            let text = self.files.len();
+            self.by_name.insert(number, text);
+            let start = self.first_line(text);
+            return Ok(Some(Found { text, start }));
+        }
+        Ok(None)
+    }
+
+    /// Where the program of a file begins: behind its leader, with its number.
+    fn first_line(&self, text: Text) -> usize {
+        let Some(file) = self.files.get(text - 1) else {
+            return 0;
+        };
+        let numbered = (0..file.len()).find(|&index| program_number(file.line(index)).is_some());
+        let opened = (0..file.len()).find(|&index| file.line(index).first() == Some(&b'%'));
+        numbered.or(opened.map(|index| index + 1)).unwrap_or(0)
+    }
+
+    /// Calls a program that was found, at one of its blocks where that is asked for.
+    pub(crate) fn call<R: BufRead>(
+        &mut self,
+        flow: &mut Flow<R>,
+        found: Found,
+        frame: (Kind, u32, u32),
+        block: Option<u32>,
+    ) -> Result<(), Reason> {
+        if self.frames.len() > DEEPEST_CALL {
+            let bound = DEEPEST_CALL;
+            return Err(FlowError::TooDeep { bound }.into());
+        }
+        let entry = match block {
+            Some(block) => self.label(flow, found, block, found.start)?,
+            None => found.start,
+        };
+        let (kind, number, left) = frame;
+        self.frames.push(Frame {
+            kind,
+            number,
+            text: found.text,
+            start: found.start,
+            entry,
+            next: entry,
+            left,
+            loops: Vec::new(),
+        });
+        Ok(())
+    }
+
+    /// The program that runs, to be called at one of its own blocks.
+    pub(crate) fn this(&self) -> Found {
+        let frame = self.frames.last();
+        Found {
+            text: frame.map_or(0, |frame| frame.text),
+            start: frame.map_or(0, |frame| frame.start),
+        }
+    }
+
+    /// Begins the program that runs once more; false where its repetitions are used up.
+    pub(crate) fn repeat(&mut self) -> bool {
+        let Some(frame) = self.top() else {
+            return false;
+        };
+        frame.left = frame.left.saturating_sub(1);
+        if frame.left == 0 {
+            return false;
+        }
+        frame.next = frame.entry;
+        frame.loops.clear();
+        true
+    }
+}
