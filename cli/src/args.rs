@@ -11,7 +11,7 @@ use toolglide_machines::ModeConfig;
 use toolglide_optimal::Effort;
 
 /// Names of the languages of programs.
-const DIALECTS: [&str; 3] = ["ngc", "840d", "cl"];
+const DIALECTS: [&str; 4] = ["ngc", "fanuc", "840d", "cl"];
 
 /// Plans smooth motion for machine tools and judges it.
 #[derive(Debug, Parser)]

@@ -41,8 +41,9 @@ pub(crate) fn check(
         err,
         quiet: args.json,
     };
-    if language == Language::Ngc {
+    if matches!(language, Language::Ngc | Language::Fanuc) {
         let program = Program::new(source.reader, &source.name, settings)
+            .in_language(language)
             .with_tools(tools)
             .with_subroutines(subroutines(&args.program))
             .with_rotary_axes()

@@ -56,6 +56,7 @@ pub(crate) fn moves<const N: usize>(
             .in_language(source.language)
             .for_machine(&setup.machine)
             .with_tools(setup.tools.clone())
+            .with_reference_points(&setup.reference_points)
             .with_subroutines(subroutines(&job.program)),
         name: source.name,
         travel: Travel::of(&setup.axes),

@@ -39,6 +39,8 @@ pub(crate) struct Setup {
     pub(crate) modes_asked: String,
     /// Tools of the machine.
     pub(crate) tools: ToolTable,
+    /// Its reference points: X Y Z in mm, A B C in degrees.
+    pub(crate) reference_points: Vec<[f64; 6]>,
     start: Vec<f64>,
 }
 
@@ -56,6 +58,7 @@ pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinem
     let machine = find(&config.model)
         .and_then(|model| (model.build)(&config))
         .and_then(|machine| config.modes().map(|_| machine))
+        .and_then(|machine| config.reference_points().map(|_| machine))
         .map_err(|reason| toolglide_machines::MachineError::InFile {
             file: path.to_owned(),
             reason: Box::new(reason),
@@ -108,6 +111,7 @@ impl Setup {
             None => machine.default_tolerance(),
         };
         let modes = config.modes()?.to_vec();
+        let reference_points = config.reference_points()?;
         Ok(Self {
             time_constants: config.fir_s,
             modes,
@@ -119,6 +123,7 @@ impl Setup {
             override_tolerance: job.tolerance.is_some(),
             period: checked_period(period.unwrap_or(machine.set_point_period().seconds()))?,
             tools: crate::source::tools(job.tool_table.as_deref())?,
+            reference_points,
             start,
         })
     }

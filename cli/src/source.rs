@@ -107,6 +107,9 @@ pub(crate) fn tools(path: Option<&Path>) -> Result<ToolTable, CliError> {
     })
 }
 
+/// Endings of files of subroutines; controls of FANUC write none.
+const ENDINGS: [&str; 5] = [".ngc", ".nc", ".cnc", ".tap", ""];
+
 /// Finds subroutines that stand in files of their own, beside a program.
 pub(crate) fn subroutines(
     program: &Path,
@@ -117,24 +120,30 @@ pub(crate) fn subroutines(
         if name.contains(['/', '\\']) || name.starts_with('.') {
             return Ok(None);
         }
-        let path = folder.join(format!("{name}.ngc"));
-        match std::fs::metadata(&path).and_then(|found| {
-            // Opening a pipe would wait for whoever writes it.
-            if found.is_file() {
-                File::open(&path)
-            } else {
-                Err(std::io::Error::other(
-                    "it is no file of text, but a folder, a pipe or a device",
-                ))
+        for ending in ENDINGS {
+            let path = folder.join(format!("{name}{ending}"));
+            let opened = std::fs::metadata(&path).and_then(|found| {
+                // Opening a pipe would wait for whoever writes it.
+                if found.is_file() {
+                    File::open(&path)
+                } else if found.is_dir() && ending.is_empty() {
+                    Err(std::io::ErrorKind::NotFound.into())
+                } else {
+                    Err(std::io::Error::other(
+                        "it is no file of text, but a folder, a pipe or a device",
+                    ))
+                }
+            });
+            match opened {
+                Ok(file) => {
+                    let mut text = Vec::new();
+                    file.take(LARGEST_FILE).read_to_end(&mut text)?;
+                    return Ok(Some(text));
+                }
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+                Err(error) => return Err(error),
             }
-        }) {
-            Ok(file) => {
-                let mut text = Vec::new();
-                file.take(LARGEST_FILE).read_to_end(&mut text)?;
-                Ok(Some(text))
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error),
         }
+        Ok(None)
     }
 }

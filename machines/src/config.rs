@@ -16,6 +16,9 @@ const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Period of the set-points where a machine file names none, s: what most drives take.
 const DEFAULT_PERIOD: f64 = 0.001;
 
+/// Reference points that an axis may have.
+const MOST_REFERENCES: usize = 4;
+
 /// What is asked of every limit, tolerance and period.
 const POSITIVE: &str = "positive and finite";
 
@@ -87,6 +90,11 @@ pub struct AxisConfig {
     /// Position of the axis where its model is at 0, mm or degrees.
     #[serde(default)]
     pub zero: f64,
+    /// Positions at the reference points, mm or degrees: that of `G28` first, then those of `G30`, `G30 P3`
+    /// and `G30 P4`; 0 where none is written.
+    #[serde(default)]
+    #[schemars(length(max = 4))]
+    pub reference: Vec<f64>,
 }
 
 fn default_tolerance() -> f64 {
@@ -164,6 +172,33 @@ impl MachineConfig {
         Ok(&self.mode)
     }
 
+    /// The reference points that some axis names: X Y Z in mm and A B C in degrees, 0 for an axis that does
+    /// not name one.
+    ///
+    /// # Errors
+    /// [`MachineError::Field`] for an axis with more than four of them, or with one that is not finite.
+    pub fn reference_points(&self) -> Result<Vec<[f64; 6]>, MachineError> {
+        let most = self.axis.iter().map(|axis| axis.reference.len()).max();
+        let mut points = vec![[0.0; 6]; most.unwrap_or(0)];
+        for axis in &self.axis {
+            let field = || format!("axis {}: reference", axis.name);
+            if axis.reference.len() > MOST_REFERENCES {
+                let bound = "a list of four numbers at most";
+                return Err(MachineError::field(field(), axis.reference.len(), bound));
+            }
+            let place = "XYZABC".find(axis.name);
+            for (point, &value) in points.iter_mut().zip(&axis.reference) {
+                if value.is_nan() || value.abs() >= LARGEST_MAGNITUDE {
+                    return Err(MachineError::field(field(), value, "finite"));
+                }
+                if let Some(place) = place {
+                    point[place] = value;
+                }
+            }
+        }
+        Ok(points)
+    }
+
     /// Letters of the axes, in machine order, as in "XYZ".
     #[must_use]
     pub fn letters(&self) -> String {
@@ -183,6 +218,7 @@ impl AxisConfig {
             travel: None,
             reversed: false,
             zero: 0.0,
+            reference: Vec::new(),
         }
     }
 
@@ -326,6 +362,28 @@ mod tests {
             assert!(
                 matches!(config.modes(), Err(MachineError::Field { .. })),
                 "{wrong:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn reference_points_are_those_of_all_axes_together() {
+        let mut y = AxisConfig::new('Y', 100.0, 1000.0, 1e5);
+        y.reference = vec![300.0, 150.0];
+        let mut c = AxisConfig::new('C', 100.0, 1000.0, 1e5);
+        c.reference = vec![90.0];
+        let mut config = MachineConfig::new("gantry", "m", vec![y, c]);
+        let points = config.reference_points().unwrap();
+        let expected = [
+            [0.0, 300.0, 0.0, 0.0, 0.0, 90.0],
+            [0.0, 150.0, 0.0, 0.0, 0.0, 0.0],
+        ];
+        assert_eq!(points, expected, "points");
+        for wrong in [vec![f64::NAN], vec![0.0; 5]] {
+            config.axis[0].reference = wrong;
+            assert!(
+                matches!(config.reference_points(), Err(MachineError::Field { .. })),
+                "wrong"
             );
         }
     }

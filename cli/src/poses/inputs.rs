@@ -135,6 +135,7 @@ impl Inputs {
         let mut legs = Legs {
             program: Poses::new(boxed, &name, settings, language)
                 .with_tools(self.setup.tools.clone())
+                .with_reference_points(&self.setup.reference_points)
                 .with_subroutines(subroutines(&job.program))
                 .for_machine(&self.setup.machine),
             resolver: None,
