@@ -47,13 +47,34 @@ pub(crate) fn show_beside_rows(shown: &impl Shown, err: &mut dyn Write) -> Resul
     Ok(code)
 }
 
-/// The verdict in one line.
-pub(crate) fn verdict(violations: u64) -> String {
-    match violations {
-        0 => "verdict      every limit and tolerance is kept\n".to_owned(),
-        1 => "verdict      NOT ALLOWED: 1 violation\n".to_owned(),
-        more => format!("verdict      NOT ALLOWED: {more} violations\n"),
+/// The verdict in one line, of a motion whose rows are so many times too far apart to be judged.
+pub(crate) fn verdict(violations: u64, too_coarse: u64) -> String {
+    let counted = |count: u64, what: &str| match count {
+        1 => format!("1 {what}"),
+        more => format!("{more} {what}s"),
+    };
+    let gaps = counted(too_coarse, "gap");
+    match (violations, too_coarse) {
+        (0, 0) => "verdict      every limit and tolerance is kept\n".to_owned(),
+        (0, _) => format!("verdict      too coarse to judge: {gaps} between rows\n"),
+        (_, 0) => format!(
+            "verdict      NOT ALLOWED: {}\n",
+            counted(violations, "violation")
+        ),
+        _ => format!(
+            "verdict      NOT ALLOWED: {}; too coarse to judge the rest: {gaps} between rows\n",
+            counted(violations, "violation")
+        ),
     }
+}
+
+/// Whether a count is left out of what a program reads.
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands fields over by reference"
+)]
+pub(crate) fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Violations of one motion behind whose they are, and how many are not quoted.

@@ -3,7 +3,7 @@
 //! Source: the judge's report. Not here: judging.
 
 use crate::setup::Setup;
-use crate::shown::{Shown, quoted, verdict};
+use crate::shown::{Shown, is_zero, quoted, verdict};
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_kinematics::WindowTally;
@@ -44,6 +44,11 @@ pub(crate) struct Summary {
     pub(crate) windows: Option<Windows>,
     pub(crate) violations: u64,
     pub(crate) worst: Vec<String>,
+    /// How many times rows are too far apart to be judged, and the first of them.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub(crate) too_coarse: u64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) coarsest: Vec<String>,
 }
 
 /// How the windows of a planner came out, as JSON names it.
@@ -124,6 +129,13 @@ impl Summary {
             windows: None,
             violations: report.violations,
             worst: worst_first(&report.examples),
+            too_coarse: report.gaps.count,
+            coarsest: report
+                .gaps
+                .examples
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
         }
     }
 
@@ -149,7 +161,7 @@ impl Summary {
 
 impl Shown for Summary {
     fn passes(&self) -> bool {
-        self.violations == 0
+        self.violations == 0 && self.too_coarse == 0
     }
 
     fn text(&self) -> String {
@@ -197,12 +209,14 @@ impl Shown for Summary {
         if let Some(windows) = &self.windows {
             let _ = writeln!(text, "windows      {}", windows.text());
         }
-        text.push_str(&verdict(self.violations));
+        text.push_str(&verdict(self.violations, self.too_coarse));
         text
     }
 
     fn complaint(&self) -> String {
-        quoted(&self.program, &self.worst, self.violations)
+        let mut text = quoted(&self.program, &self.worst, self.violations);
+        text.push_str(&quoted(&self.program, &self.coarsest, self.too_coarse));
+        text
     }
 }
 

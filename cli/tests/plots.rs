@@ -112,3 +112,27 @@ fn limits_told_in_words_have_the_unit_of_their_chart() {
         run.out
     );
 }
+
+#[test]
+fn a_corner_is_drawn_as_near_as_the_verdict_says() {
+    let folder = Folder::new();
+    // One corner, passed at the speed at which the drawn points of the motion are farthest apart.
+    let program = folder.write("corner.ngc", "G21 G90 G64 P0.03\nG1 X60 F6000\nY60\nM2\n");
+    let plot = folder.name("motion.svg");
+    for method in ["fir", "kcs", "optimal", "kcs-interrupted"] {
+        let run = toolglide(&[
+            "plan", &program, "--method", method, "--plot", &plot, "--json",
+        ]);
+        assert_eq!(run.code, 0, "{method}: {}", run.err);
+        let summary: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+        let judged = 1e3 * summary["max_corner_error_mm"].as_f64().unwrap();
+        let svg = folder.read("motion.svg");
+        let (_, after) = svg.split_once("passed at ").unwrap();
+        let (drawn, _) = after.split_once(" of 30.000 µm").unwrap();
+        let drawn: f64 = drawn.parse().unwrap();
+        assert!(
+            (drawn - judged).abs() <= 0.000_6,
+            "{method}: {drawn} drawn, {judged} judged"
+        );
+    }
+}

@@ -187,8 +187,81 @@ fn the_program_is_read_ahead_however_many_moves_a_row_passes() {
         "exact-stop",
     ]);
     assert_eq!(plan.code, 0, "{}", plan.err);
+    let run = toolglide(&["verify", &program, &output, "--json"]);
+    let summary: Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(summary["violations"], 0, "{}", run.err);
+}
+
+#[test]
+fn rows_too_far_apart_to_show_a_corner_are_too_coarse_to_judge() {
+    let folder = Folder::new();
+    let text = "G1 X10 Y5 F3000\nX0 Y9\nG2 X5 Y9 I2.5\nM2\n";
+    let program = folder.write("part.ngc", text);
+    let two = "t_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.6827487552598196,5,9,0\n";
+    let file = folder.write("two.csv", two);
+    let run = toolglide(&["verify", &program, &file]);
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert!(
+        run.out
+            .contains("verdict      too coarse to judge: 1 gap between rows"),
+        "{}",
+        run.out
+    );
+    assert!(
+        run.err
+            .contains("too coarse to judge: rows are 0.6827 s apart from 0.0000 s on"),
+        "{}",
+        run.err
+    );
+    let json = toolglide(&["verify", &program, &file, "--json"]);
+    let summary: Value = serde_json::from_str(&json.out).unwrap();
+    assert_eq!(summary["too_coarse"], 1, "{summary}");
+    assert_eq!(summary["violations"], 0, "{summary}");
+    assert_eq!(json.code, 1);
+    // What every program writes a millisecond apart is fine, a tenth of it is not.
+    let output = folder.name("motion.csv");
+    assert_eq!(toolglide(&["plan", &program, "-o", &output]).code, 0);
     let run = toolglide(&["verify", &program, &output]);
     assert_eq!(run.code, 0, "{}", run.err);
+    let rows = folder.read("motion.csv");
+    let last = rows.lines().count() - 1;
+    let tenth = rows.lines().enumerate();
+    let tenth = tenth.filter(|(index, _)| index % 10 == 1 || *index == last);
+    let tenth: Vec<&str> = tenth.map(|(_, row)| row).collect();
+    let text = format!("t_s,x_mm,y_mm,z_mm\n{}\n", tenth.join("\n"));
+    let file = folder.write("tenth.csv", text);
+    let run = toolglide(&["verify", &program, &file]);
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert!(run.out.contains("too coarse to judge"), "{}", run.out);
+    assert!(!run.out.contains("NOT ALLOWED"), "{}", run.err);
+}
+
+#[test]
+fn rows_of_tool_poses_may_be_too_coarse_to_judge_as_well() {
+    let folder = Folder::new();
+    let program = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/poses/star.apt");
+    let rows = folder.name("rows.csv");
+    let on = ["--machine", "table-ac", "--tolerance", "0.2"];
+    let plan = toolglide(&[&["plan", program, "-o", &rows], &on[..]].concat());
+    assert_eq!(plan.code, 0, "{}", plan.err);
+    let run = toolglide(&[&["verify", program, &rows], &on[..]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = folder.read("rows.csv");
+    let lines: Vec<&str> = text.lines().collect();
+    for every in [100, lines.len()] {
+        let kept = lines.iter().enumerate().skip(1);
+        let kept = kept.filter(|(index, _)| index % every == 1 || *index == lines.len() - 1);
+        let kept: Vec<&str> = kept.map(|(_, row)| *row).collect();
+        let few = folder.write("few.csv", format!("{}\n{}\n", lines[0], kept.join("\n")));
+        let run = toolglide(&[&["verify", program, &few], &on[..]].concat());
+        assert_eq!(run.code, 1, "{every}: {}", run.out);
+        assert!(
+            run.out.contains("too coarse to judge"),
+            "{every}: {}",
+            run.out
+        );
+        assert!(!run.out.contains("NOT ALLOWED"), "{every}: {}", run.err);
+    }
 }
 
 #[test]

@@ -49,6 +49,10 @@ pub(crate) struct Sweep<const N: usize> {
     active: Queue<Active<N>>,
     /// How many of the active pulses have begun.
     begun: usize,
+    /// Where the state was computed afresh last: positions are told from here, so that what many steps add up keeps
+    /// the digits of steps, however far from zero they are.
+    origin: Vector<N>,
+    /// The state, its position from the origin.
     state: Sample<N>,
     time: f64,
     /// End of the last pulse commanded.
@@ -68,7 +72,8 @@ impl<const N: usize> Sweep<N> {
             commands: VecDeque::with_capacity(capacity),
             active: Queue::with_capacity(capacity),
             begun: 0,
-            state: Sample::at_rest(start),
+            origin: start,
+            state: Sample::at_rest(Vector::zeros()),
             time: 0.0,
             commanded: 0.0,
             resting: false,
@@ -96,7 +101,7 @@ impl<const N: usize> Sweep<N> {
             }
             if self.resting {
                 // Every step has arrived at every tap.
-                let at = self.state.position;
+                let at = self.here();
                 self.restart(at);
                 continue;
             }
@@ -116,12 +121,12 @@ impl<const N: usize> Sweep<N> {
                     self.taps.push(self.commanded, Vector::zeros());
                 }
                 Command::Pause { duration, serves } => {
-                    let at = self.state.position;
+                    let at = self.here();
                     return Some(Piece::new(&Sample::at_rest(at), duration, at, serves));
                 }
                 Command::Filters { long, short } => {
                     self.chain = CubicChain::of_two(long, short);
-                    let at = self.state.position;
+                    let at = self.here();
                     self.restart(at);
                 }
             }
@@ -157,9 +162,20 @@ impl<const N: usize> Sweep<N> {
         });
     }
 
+    /// Where the motion is.
+    fn here(&self) -> Vector<N> {
+        self.origin + self.state.position
+    }
+
+    /// Rests at a point, exactly.
+    fn rest_at(&mut self, at: Vector<N>) {
+        self.origin = at;
+        self.state = Sample::at_rest(Vector::zeros());
+    }
+
     /// Begins afresh at rest.
     fn restart(&mut self, at: Vector<N>) {
-        self.state = Sample::at_rest(at);
+        self.rest_at(at);
         self.time = 0.0;
         self.commanded = 0.0;
         self.resting = false;
@@ -179,13 +195,16 @@ impl<const N: usize> Sweep<N> {
             return None;
         }
         let serves = self.serves();
-        let start = self.state;
+        let start = Sample {
+            position: self.here(),
+            ..self.state
+        };
         self.time = knot;
-        self.state = after(&start, duration);
+        self.state = after(&self.state, duration);
         self.expire();
         self.since_anchor += 1;
         self.arrive(knot);
-        let end = self.state.position;
+        let end = self.here();
         self.set_back_clock(self.time);
         Some(Piece::new(&start, duration, end, serves))
     }
@@ -214,7 +233,8 @@ impl<const N: usize> Sweep<N> {
     /// Rests at the end of the last pulse, exactly.
     fn land(&mut self) {
         if let Some(last) = self.active.items().last() {
-            self.state = Sample::at_rest(last.to);
+            let to = last.to;
+            self.rest_at(to);
             self.active.clear();
             self.begun = 0;
         }
@@ -252,10 +272,9 @@ impl<const N: usize> Sweep<N> {
         {
             if self.active.len() == 1 {
                 // A gap as long as the chain remembers, or the end.
-                self.state = Sample {
-                    jerk: self.state.jerk,
-                    ..Sample::at_rest(oldest.to)
-                };
+                let (to, jerk) = (oldest.to, self.state.jerk);
+                self.rest_at(to);
+                self.state.jerk = jerk;
             }
             self.active.drop_oldest(1);
             self.begun = self.begun.saturating_sub(1);
@@ -270,7 +289,7 @@ impl<const N: usize> Sweep<N> {
             .active
             .items()
             .first()
-            .map_or(self.state.position, |oldest| oldest.from);
+            .map_or(self.here(), |oldest| oldest.from);
         let mut velocity = Vector::zeros();
         let mut acceleration = Vector::zeros();
         for pulse in self.active.items() {
@@ -283,7 +302,8 @@ impl<const N: usize> Sweep<N> {
             velocity += pulse.velocity * (begun[1] - ended[1]);
             acceleration += pulse.velocity * (begun[2] - ended[2]);
         }
-        self.state.position = position;
+        self.origin = position;
+        self.state.position = Vector::zeros();
         self.state.velocity = velocity;
         self.state.acceleration = acceleration;
         self.state.jerk = self.taps.sum();

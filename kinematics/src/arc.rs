@@ -7,7 +7,7 @@ use crate::error::ToolpathError;
 use crate::numeric::{
     ARC_RADIUS_MISMATCH, ARC_RADIUS_MISMATCH_MOST, ARC_RADIUS_MISMATCH_SHARE, SHORTEST_LENGTH,
 };
-use crate::vector::{Vector, is_finite};
+use crate::vector::{Vector, check};
 
 /// A turn about a centre in a plane, while the other axes advance in proportion to the angle.
 ///
@@ -40,7 +40,8 @@ impl<const N: usize> Arc<N> {
     /// [`ToolpathError::ArcMismatch`] when start and end lie on circles whose radii differ by more
     /// than [`ARC_RADIUS_MISMATCH`] or [`ARC_RADIUS_MISMATCH_SHARE`], whichever is larger, or by
     /// more than [`ARC_RADIUS_MISMATCH_MOST`],
-    /// [`ToolpathError::NotFinite`] for coordinates that are not finite.
+    /// [`ToolpathError::NotFinite`] for coordinates that are not finite, [`ToolpathError::TooFar`] for those beyond
+    /// [`LARGEST_COORDINATE`](crate::numeric::LARGEST_COORDINATE).
     ///
     /// # Examples
     /// ```
@@ -63,8 +64,8 @@ impl<const N: usize> Arc<N> {
         if first == second || first >= N || second >= N {
             return Err(ToolpathError::ArcPlane { plane, axes: N });
         }
-        if !(is_finite(&start) && is_finite(&end) && is_finite(&center)) {
-            return Err(ToolpathError::NotFinite);
+        for point in [&start, &end, &center] {
+            check(point)?;
         }
         let from = [start[first] - center[first], start[second] - center[second]];
         let to = [end[first] - center[first], end[second] - center[second]];

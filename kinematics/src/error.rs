@@ -1,6 +1,6 @@
 //! What can be wrong with limits and paths.
 
-use crate::numeric::LEAST_QUANTITY;
+use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LEAST_QUANTITY};
 use thiserror::Error;
 
 /// Why limits are refused.
@@ -18,6 +18,14 @@ pub enum LimitsError {
     /// A limit is below [`LEAST_QUANTITY`].
     #[error("{quantity} limit is {value}, but must be at least {LEAST_QUANTITY}")]
     TooSmall {
+        /// Which limit.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A limit is above [`LARGEST_QUANTITY`].
+    #[error("{quantity} limit is {value}, but may be at most {LARGEST_QUANTITY:e}")]
+    TooLarge {
         /// Which limit.
         quantity: &'static str,
         /// What was given.
@@ -45,9 +53,25 @@ pub enum ToolpathError {
         /// What was given.
         value: f64,
     },
+    /// A quantity is larger than planners can carry.
+    #[error("{quantity} is {value:e}, but may be at most {bound:e}")]
+    TooLarge {
+        /// Which quantity.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+        /// The largest.
+        bound: f64,
+    },
     /// A coordinate is not a finite number.
     #[error("a coordinate is not a finite number")]
     NotFinite,
+    /// A coordinate is beyond [`LARGEST_COORDINATE`].
+    #[error("a coordinate is {value:e} mm, but may be at most {LARGEST_COORDINATE:e} mm")]
+    TooFar {
+        /// The coordinate, mm.
+        value: f64,
+    },
     /// A path needs a point to start from.
     #[error("a path needs at least one point")]
     Empty,
@@ -82,6 +106,18 @@ pub enum ToolpathError {
     Gap {
         /// The distance, mm.
         gap: f64,
+    },
+    /// The tolerance of an arc is below [`LEAST_SHARE_OF_RADIUS`](crate::numeric::LEAST_SHARE_OF_RADIUS).
+    #[error(
+        "tolerance is {tolerance:e} mm, but must be at least {least:e} mm for an arc of radius {radius} mm"
+    )]
+    TooFine {
+        /// The tolerance, mm.
+        tolerance: f64,
+        /// The least, mm.
+        least: f64,
+        /// The larger radius of the arc, mm.
+        radius: f64,
     },
     /// A direction must have unit length.
     #[error("orientation has length {length}, but must have length 1")]

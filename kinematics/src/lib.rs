@@ -51,5 +51,6 @@ pub use toolpath::{Move, Path, Toolpath, check_contact};
 pub use vector::Vector;
 pub use verify::pose::{PoseJudge, PoseReport, PoseViolation};
 pub use verify::{
-    Judge, Peak, Place, Report, SetPointJudge, VerifyError, Violation, verify, verify_set_points,
+    Gap, Gaps, Judge, Peak, Place, Report, SetPointJudge, Unseen, VerifyError, Violation, verify,
+    verify_set_points,
 };

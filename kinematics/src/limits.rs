@@ -4,7 +4,7 @@
 //! and 3.2. Not here: travel, which belongs to a machine.
 
 use crate::error::LimitsError;
-use crate::numeric::LEAST_QUANTITY;
+use crate::numeric::{LARGEST_QUANTITY, LEAST_QUANTITY};
 use crate::vector::Vector;
 
 /// The limits of one axis.
@@ -20,7 +20,7 @@ impl AxisLimits {
     ///
     /// # Errors
     /// [`LimitsError::NotPositive`] names the first quantity that is not, [`LimitsError::TooSmall`] the first
-    /// one below [`LEAST_QUANTITY`].
+    /// one below [`LEAST_QUANTITY`], [`LimitsError::TooLarge`] the first one above [`LARGEST_QUANTITY`].
     ///
     /// # Examples
     /// ```
@@ -39,6 +39,9 @@ impl AxisLimits {
             }
             if value < LEAST_QUANTITY {
                 return Err(LimitsError::TooSmall { quantity, value });
+            }
+            if value > LARGEST_QUANTITY {
+                return Err(LimitsError::TooLarge { quantity, value });
             }
         }
         Ok(Self {
@@ -116,6 +119,16 @@ impl<const N: usize> Limits<N> {
             scaled.jerk[axis] = limits.jerk;
         }
         Ok(scaled)
+    }
+
+    /// The limits of one axis, counted from 0; `None` for an axis that there is not.
+    #[must_use]
+    pub fn axis(&self, axis: usize) -> Option<AxisLimits> {
+        (axis < N).then(|| AxisLimits {
+            velocity: self.velocity[axis],
+            acceleration: self.acceleration[axis],
+            jerk: self.jerk[axis],
+        })
     }
 
     /// Largest velocity of each axis.

@@ -55,6 +55,10 @@ pub const JUMP_SLACK: f64 = 1e-9;
 /// the durations that are added.
 pub const TIME_SLACK: f64 = 1e-9;
 
+/// Rows of set-points at most this far apart, s, are what a drive is given, with nothing between them to
+/// judge: the usual period of controllers.
+pub const SERVO_PERIOD: f64 = 1e-3;
+
 /// Relative precision to which the judge finds the largest deviation and the closest approach to
 /// a corner: a ten-thousandth of a micrometre for a tolerance of 0.1 mm.
 pub const JUDGE_PRECISION: f64 = 1e-6;
@@ -78,6 +82,21 @@ pub const JUDGE_PARTS_OF_A_MOVE: u32 = 64;
 /// Numbers beyond this are no motion, mm, s and their quotients: sixth powers of them must still be
 /// finite.
 pub const LARGEST_MAGNITUDE: f64 = 1e30;
+
+/// Coordinates beyond this are refused, mm: ten kilometres, where a float of 64 bits still resolves
+/// two millionths of a micrometre.
+pub const LARGEST_COORDINATE: f64 = 1e7;
+
+/// Limits and feedrates beyond this are refused, mm, rad and their quotients with s: their cubes and quotients,
+/// times any length, must stay finite and keep their digits.
+pub const LARGEST_QUANTITY: f64 = 1e15;
+
+/// A tolerance below this share of the radius of its arc is refused: a turn would have more than 200,000 chords, and
+/// float arithmetic would leave less than six digits of the tolerance.
+pub const LEAST_SHARE_OF_RADIUS: f64 = 1e-10;
+
+/// Dwells beyond this are refused, s: thirty years.
+pub const LONGEST_DURATION: f64 = 1e9;
 
 /// Limits, feedrates and tolerances below this are refused, mm, rad and their quotients with s: no axis is so
 /// slow and no encoder so fine, and motion within them would outlast the digits of its time.

@@ -4,7 +4,7 @@
 
 use crate::error::ToolpathError;
 use crate::numeric::UNIT_LENGTH_ERROR;
-use crate::vector::{Vector, is_finite};
+use crate::vector::{Vector, check, is_finite};
 
 /// Tool tip, mm, and tool orientation, a unit vector from the tip into the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,10 +17,11 @@ impl ToolPose {
     /// A pose from a tip and an orientation of about unit length, which is made exactly so.
     ///
     /// # Errors
-    /// [`ToolpathError::NotFinite`] for coordinates that are not finite, and
-    /// [`ToolpathError::NotUnit`] when the length is off by more than [`UNIT_LENGTH_ERROR`].
+    /// [`ToolpathError::NotFinite`] for coordinates that are not finite, [`ToolpathError::TooFar`] for those beyond
+    /// [`LARGEST_COORDINATE`](crate::numeric::LARGEST_COORDINATE), and [`ToolpathError::NotUnit`] when the length is off by more than [`UNIT_LENGTH_ERROR`].
     pub fn new(tip: Vector<3>, orientation: Vector<3>) -> Result<Self, ToolpathError> {
-        if !(is_finite(&tip) && is_finite(&orientation)) {
+        check(&tip)?;
+        if !is_finite(&orientation) {
             return Err(ToolpathError::NotFinite);
         }
         let length = orientation.norm();

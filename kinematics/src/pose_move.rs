@@ -4,9 +4,10 @@
 //! axis words as programs of five axes write them. Not here: what the words mean on a machine.
 
 use crate::error::ToolpathError;
+use crate::numeric::LONGEST_DURATION;
 use crate::pose::ToolPose;
 use crate::tolerance::{Feedrate, Tolerance};
-use crate::vector::{Vector, is_finite};
+use crate::vector::{Vector, check};
 
 /// Where a pose move leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,9 @@ impl PoseMove {
     /// A move to `end`, whose tool tip may leave its line by `tolerance`.
     ///
     /// # Errors
-    /// [`ToolpathError::NotFinite`] for words that are not finite, [`ToolpathError::NotPositive`]
+    /// [`ToolpathError::NotFinite`] for words that are not finite, [`ToolpathError::TooFar`] for coordinates beyond
+    /// [`LARGEST_COORDINATE`](crate::numeric::LARGEST_COORDINATE), [`ToolpathError::TooLarge`] for a dwell beyond
+    /// [`LONGEST_DURATION`], [`ToolpathError::NotPositive`]
     /// for a dwell that is negative or endless, or a duration that is not positive and finite.
     ///
     /// # Examples
@@ -73,7 +76,8 @@ impl PoseMove {
         match &end {
             PoseEnd::Pose(_) => {}
             PoseEnd::Axes { linear, rotary, .. } => {
-                if !(is_finite(linear) && rotary.iter().all(|angle| angle.is_finite())) {
+                check(linear)?;
+                if !rotary.iter().all(|angle| angle.is_finite()) {
                     return Err(ToolpathError::NotFinite);
                 }
             }
@@ -83,6 +87,13 @@ impl PoseMove {
                     return Err(ToolpathError::NotPositive {
                         quantity: "dwell",
                         value: *duration,
+                    });
+                }
+                if *duration > LONGEST_DURATION {
+                    return Err(ToolpathError::TooLarge {
+                        quantity: "dwell",
+                        value: *duration,
+                        bound: LONGEST_DURATION,
                     });
                 }
             }

@@ -4,20 +4,27 @@
 //! is that of section 5.3.
 
 use crate::error::ToolpathError;
-use crate::numeric::{LEAST_QUANTITY, LEAST_SHARE};
+use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LEAST_QUANTITY, LEAST_SHARE};
 
 /// Corner tolerance: every point of the motion lies within it of the path, and the motion passes
 /// within it of every corner. Positive and finite, mm.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Tolerance(f64);
 
-/// A quantity that is finite, positive, and no less than anything can be.
-fn sized(quantity: &'static str, value: f64) -> Result<f64, ToolpathError> {
+/// A quantity that is finite, positive, no less than anything can be, and no larger than a bound.
+fn sized(quantity: &'static str, value: f64, bound: f64) -> Result<f64, ToolpathError> {
     if !(value > 0.0 && value.is_finite()) {
         return Err(ToolpathError::NotPositive { quantity, value });
     }
     if value < LEAST_QUANTITY {
         return Err(ToolpathError::TooSmall { quantity, value });
+    }
+    if value > bound {
+        return Err(ToolpathError::TooLarge {
+            quantity,
+            value,
+            bound,
+        });
     }
     Ok(value)
 }
@@ -27,9 +34,9 @@ impl Tolerance {
     ///
     /// # Errors
     /// [`ToolpathError::NotPositive`] unless it is positive and finite, [`ToolpathError::TooSmall`] below
-    /// [`LEAST_QUANTITY`].
+    /// [`LEAST_QUANTITY`], [`ToolpathError::TooLarge`] above [`LARGEST_COORDINATE`].
     pub fn new(length: f64) -> Result<Self, ToolpathError> {
-        sized("tolerance", length).map(Self)
+        sized("tolerance", length, LARGEST_COORDINATE).map(Self)
     }
 
     /// The tolerance in mm.
@@ -64,9 +71,9 @@ impl Feedrate {
     ///
     /// # Errors
     /// [`ToolpathError::NotPositive`] unless it is positive and finite, [`ToolpathError::TooSmall`] below
-    /// [`LEAST_QUANTITY`].
+    /// [`LEAST_QUANTITY`], [`ToolpathError::TooLarge`] above [`LARGEST_QUANTITY`].
     pub fn new(speed: f64) -> Result<Self, ToolpathError> {
-        sized("feedrate", speed).map(Self)
+        sized("feedrate", speed, LARGEST_QUANTITY).map(Self)
     }
 
     /// The speed in mm/s; infinite for a rapid.
@@ -99,7 +106,7 @@ impl OrientationTolerance {
         if angle >= std::f64::consts::PI {
             return Err(ToolpathError::NotPositive { quantity, value });
         }
-        sized(quantity, value).map(Self)
+        sized(quantity, value, std::f64::consts::PI).map(Self)
     }
 
     /// The tolerance in rad.
@@ -144,5 +151,23 @@ mod tests {
             );
         }
         assert!(Tolerance::new(LEAST_QUANTITY).is_ok(), "the least");
+        assert!(Tolerance::new(LARGEST_COORDINATE).is_ok(), "the largest");
+        assert!(Feedrate::new(LARGEST_QUANTITY).is_ok(), "the largest");
+        for (refused, bound) in [
+            (Tolerance::new(1.001e7).map(|_| ()), 1e7),
+            (Feedrate::new(1.001e15).map(|_| ()), 1e15),
+        ] {
+            assert!(
+                matches!(refused, Err(ToolpathError::TooLarge { bound: told, .. }) if (told - bound).abs() < 1e-9 * bound),
+                "{refused:?}"
+            );
+        }
+        assert!(
+            matches!(
+                crate::AxisLimits::new(1.0, 1.001e15, 1.0),
+                Err(crate::LimitsError::TooLarge { .. })
+            ),
+            "a limit"
+        );
     }
 }

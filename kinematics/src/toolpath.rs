@@ -4,8 +4,9 @@
 
 use crate::arc::Arc;
 use crate::error::ToolpathError;
+use crate::numeric::{LEAST_SHARE_OF_RADIUS, LENGTH_SLACK, LONGEST_DURATION};
 use crate::tolerance::{Feedrate, Tolerance};
-use crate::vector::{Vector, is_finite};
+use crate::vector::{Vector, check};
 
 /// Where a move leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,15 +42,14 @@ impl<const N: usize> Move<N> {
     /// A straight move to `end`.
     ///
     /// # Errors
-    /// [`ToolpathError::NotFinite`] for coordinates that are not finite.
+    /// [`ToolpathError::NotFinite`] for coordinates that are not finite, [`ToolpathError::TooFar`] for those beyond
+    /// [`LARGEST_COORDINATE`](crate::numeric::LARGEST_COORDINATE).
     pub fn line_to(
         end: Vector<N>,
         feedrate: Feedrate,
         tolerance: Tolerance,
     ) -> Result<Self, ToolpathError> {
-        if !is_finite(&end) {
-            return Err(ToolpathError::NotFinite);
-        }
+        check(&end)?;
         Ok(Self {
             path: Path::Line { end },
             feedrate,
@@ -75,11 +75,19 @@ impl<const N: usize> Move<N> {
     ///
     /// # Errors
     /// [`ToolpathError::NotPositive`] for a negative or infinite time; zero is legal.
+    /// [`ToolpathError::TooLarge`] for one beyond [`LONGEST_DURATION`].
     pub fn dwell(duration: f64, tolerance: Tolerance) -> Result<Self, ToolpathError> {
         if !(duration >= 0.0 && duration.is_finite()) {
             return Err(ToolpathError::NotPositive {
                 quantity: "dwell",
                 value: duration,
+            });
+        }
+        if duration > LONGEST_DURATION {
+            return Err(ToolpathError::TooLarge {
+                quantity: "dwell",
+                value: duration,
+                bound: LONGEST_DURATION,
             });
         }
         Ok(Self {
@@ -167,22 +175,20 @@ impl<const N: usize> Toolpath<N> {
     /// A toolpath of no moves.
     ///
     /// # Errors
-    /// [`ToolpathError::NotFinite`] for coordinates that are not finite.
+    /// [`ToolpathError::NotFinite`] for coordinates that are not finite, [`ToolpathError::TooFar`] for those beyond
+    /// [`LARGEST_COORDINATE`](crate::numeric::LARGEST_COORDINATE).
     pub fn starting_at(start: Vector<N>) -> Result<Self, ToolpathError> {
-        if is_finite(&start) {
-            Ok(Self {
-                start,
-                moves: Vec::new(),
-            })
-        } else {
-            Err(ToolpathError::NotFinite)
-        }
+        check(&start)?;
+        Ok(Self {
+            start,
+            moves: Vec::new(),
+        })
     }
 
     /// Straight moves through points, the first of which is the start.
     ///
     /// # Errors
-    /// [`ToolpathError::Empty`] without a point, [`ToolpathError::NotFinite`] as above.
+    /// [`ToolpathError::Empty`] without a point, others as above.
     pub fn from_points(
         points: &[Vector<N>],
         feedrate: Feedrate,
@@ -199,7 +205,7 @@ impl<const N: usize> Toolpath<N> {
     /// Appends a move.
     ///
     /// # Errors
-    /// [`ToolpathError::Gap`] when an arc does not start where the last move ended.
+    /// As [`check_contact`].
     pub fn push(&mut self, next: Move<N>) -> Result<(), ToolpathError> {
         check_contact(&next, self.end())?;
         self.moves.push(next);
@@ -248,13 +254,82 @@ impl<const N: usize> Toolpath<N> {
 /// Checks that `next` can follow when the path has come to `at`.
 ///
 /// # Errors
-/// [`ToolpathError::Gap`] when it is an arc that starts elsewhere.
+/// [`ToolpathError::Gap`] when it is an arc that starts elsewhere, [`ToolpathError::TooFine`] when its tolerance is
+/// below [`LEAST_SHARE_OF_RADIUS`].
 pub fn check_contact<const N: usize>(next: &Move<N>, at: Vector<N>) -> Result<(), ToolpathError> {
     if let Path::Arc(arc) = next.path() {
         let gap = (arc.start() - at).norm();
-        if gap > crate::numeric::LENGTH_SLACK {
+        if gap > LENGTH_SLACK {
             return Err(ToolpathError::Gap { gap });
+        }
+        let (start_radius, end_radius) = arc.radii();
+        let radius = start_radius.max(end_radius);
+        let (tolerance, least) = (next.tolerance.length(), LEAST_SHARE_OF_RADIUS * radius);
+        if tolerance < least {
+            return Err(ToolpathError::TooFine {
+                tolerance,
+                least,
+                radius,
+            });
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::LARGEST_COORDINATE;
+
+    fn tolerance(length: f64) -> Tolerance {
+        Tolerance::new(length).unwrap()
+    }
+
+    #[test]
+    fn points_that_planners_cannot_carry_are_refused_with_the_bound() {
+        let to = |x: f64| Move::line_to(Vector::<2>::new(x, 0.0), Feedrate::RAPID, tolerance(0.1));
+        assert!(to(-LARGEST_COORDINATE).is_ok(), "the farthest");
+        for value in [1.000_1e7, -1e150, 1e300] {
+            assert_eq!(to(value), Err(ToolpathError::TooFar { value }));
+            let start = Vector::<2>::new(0.0, value);
+            assert_eq!(
+                Toolpath::starting_at(start),
+                Err(ToolpathError::TooFar { value })
+            );
+            let center = Vector::<2>::new(value, 0.0);
+            let arc = Arc::about(Vector::zeros(), Vector::zeros(), center, [0, 1], true, 0);
+            assert_eq!(arc, Err(ToolpathError::TooFar { value }));
+        }
+        assert_eq!(to(f64::NAN), Err(ToolpathError::NotFinite));
+        let message = ToolpathError::TooFar { value: 1e150 }.to_string();
+        assert_eq!(
+            message,
+            "a coordinate is 1e150 mm, but may be at most 1e7 mm"
+        );
+        assert!(Move::<2>::dwell(1e9, tolerance(0.1)).is_ok(), "the longest");
+        assert!(
+            matches!(
+                Move::<2>::dwell(1.1e9, tolerance(0.1)),
+                Err(ToolpathError::TooLarge { bound: 1e9, .. })
+            ),
+            "too long"
+        );
+    }
+
+    #[test]
+    fn an_arc_is_refused_whose_tolerance_is_nothing_beside_its_radius() {
+        let radius = 500.0;
+        let start = Vector::<2>::new(radius, 0.0);
+        let arc = Arc::about(start, start, Vector::zeros(), [0, 1], true, 0).unwrap();
+        let path = Toolpath::starting_at(start).unwrap();
+        for (length, fine) in [(5.001e-8, true), (4.999e-8, false)] {
+            let step = Move::arc(arc, Feedrate::RAPID, tolerance(length));
+            let pushed = path.clone().push(step);
+            assert_eq!(pushed.is_ok(), fine, "{length}: {pushed:?}");
+            assert!(
+                fine || matches!(pushed, Err(ToolpathError::TooFine { least, .. }) if (least - 5e-8).abs() < 1e-20),
+                "{pushed:?}"
+            );
+        }
+    }
 }

@@ -119,7 +119,9 @@ impl Modal {
             let length = self.units.bounded_length('P', value).map_err(at)?;
             let quantity = "tolerance";
             self.tolerance = Tolerance::new(length).map_err(|reason| match reason {
-                ToolpathError::TooSmall { .. } => at(Reason::Path(reason)),
+                ToolpathError::TooSmall { .. } | ToolpathError::TooLarge { .. } => {
+                    at(Reason::Path(reason))
+                }
                 _ => at(Reason::NotPositive { quantity, value }),
             })?;
         }

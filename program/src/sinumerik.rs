@@ -289,7 +289,9 @@ impl Line<'_> {
             let length = state.modal.units.length(value);
             state.modal.tolerance = Tolerance::new(length).map_err(|reason| {
                 let reason = match reason {
-                    ToolpathError::TooSmall { .. } => Reason::Path(reason),
+                    ToolpathError::TooSmall { .. } | ToolpathError::TooLarge { .. } => {
+                        Reason::Path(reason)
+                    }
                     _ => Reason::NotPositive { quantity, value },
                 };
                 Fault::new(span, reason)

@@ -10,9 +10,8 @@ const INCH: f64 = 25.4;
 /// One minute, s.
 const MINUTE: f64 = 60.0;
 
-/// Coordinates, radii and offsets farther than this are refused, mm: a thousand kilometres, beyond
-/// which a float of 64 bits no longer resolves a tenth of a micrometre.
-pub const FARTHEST: f64 = 1e9;
+/// Coordinates, radii and offsets farther than this are refused, mm: what planners carry.
+pub const FARTHEST: f64 = toolglide_kinematics::numeric::LARGEST_COORDINATE;
 
 /// Units of length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

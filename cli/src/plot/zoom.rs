@@ -4,7 +4,7 @@ use super::canvas::{Anchor, Canvas, Outline, through};
 use super::chart::{Chart, NORMAL};
 use super::color;
 use super::corner::SharpCorner;
-use toolglide_kinematics::Vector;
+use toolglide_kinematics::{Piece, Vector};
 
 /// How far around the corner is shown, tolerances.
 pub(crate) const WINDOW: f64 = 4.5;
@@ -14,6 +14,12 @@ pub(crate) const INSIDE: f64 = 1.6;
 
 /// Points that are drawn of a piece of motion.
 const POINTS: u32 = 48;
+
+/// Steps of golden section: a step of the points that are drawn, divided by ten million.
+const NARROWING_STEPS: u32 = 34;
+
+/// What golden section keeps of an interval.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Tolerances below this are shown in µm, mm.
 const MICROMETRES: f64 = 0.25;
@@ -40,7 +46,7 @@ impl<const N: usize> View<N> {
         draw_curve_near(
             canvas,
             color,
-            &through(motion(corner).map(|(point, _)| self.at(point))),
+            &through(motion(corner).map(|point| self.at(point))),
         );
         canvas.unclip();
     }
@@ -107,13 +113,7 @@ pub(crate) fn draw<const N: usize>(
     canvas.unclip();
     view.draw_motion(corner, color::MOTION, canvas);
     canvas.clip(x, y, width, height);
-    let motion: Vec<(Vector<N>, bool)> = motion(corner).collect();
-    // The motion may come by again later; what counts is how it turns here.
-    let turning = motion.iter().filter(|point| point.1);
-    let nearest = turning.map(|point| point.0).min_by(|one, two| {
-        let distance = |point: &Vector<N>| (point - corner.point).norm();
-        distance(one).total_cmp(&distance(two))
-    });
+    let nearest = nearest(corner);
     draw_nearest(canvas, on_chart(corner.point), nearest.map(on_chart));
     canvas.unclip();
     let place = if corner.line > 0 {
@@ -180,20 +180,74 @@ pub(crate) fn draw_nearest(canvas: &mut Canvas, corner: (f64, f64), nearest: Opt
     canvas.circle(corner, 3.0, &dot);
 }
 
-/// Points of the motion, close enough to look like a curve where the window is, and whether they
-/// belong to the two moves that meet.
-fn motion<const N: usize>(corner: &SharpCorner<N>) -> impl Iterator<Item = (Vector<N>, bool)> + '_ {
-    let near = 4.0 * WINDOW * corner.tolerance.length();
+/// Points of the motion, close enough to look like a curve where the window is.
+fn motion<const N: usize>(corner: &SharpCorner<N>) -> impl Iterator<Item = Vector<N>> + '_ {
     corner.pieces.iter().flat_map(move |piece| {
-        let length = (piece.end() - piece.start()).norm();
-        let close = (piece.start() - corner.point).norm() < near + length;
-        let points = if close { POINTS } else { 1 };
-        let turning = corner.is_served_by(piece);
+        let points = points_of(corner, piece);
         (0..=points).map(move |step| {
             let share = f64::from(step) / f64::from(points);
-            (piece.position_at(piece.duration() * share), turning)
+            piece.position_at(piece.duration() * share)
         })
     })
+}
+
+/// How many points of a piece are drawn: one, its end, where it is far from the corner.
+fn points_of<const N: usize>(corner: &SharpCorner<N>, piece: &Piece<N>) -> u32 {
+    let near = 4.0 * WINDOW * corner.tolerance.length();
+    let length = (piece.end() - piece.start()).norm();
+    if (piece.start() - corner.point).norm() < near + length {
+        POINTS
+    } else {
+        1
+    }
+}
+
+/// The point of the motion nearest to the corner, as the judge finds it: between the points that are drawn.
+///
+/// The motion may come by again later; what counts is how it turns here.
+fn nearest<const N: usize>(corner: &SharpCorner<N>) -> Option<Vector<N>> {
+    let turning = corner
+        .pieces
+        .iter()
+        .filter(|piece| corner.is_served_by(piece));
+    let points = turning.map(|piece| {
+        let at = |share: f64| piece.position_at(piece.duration() * share);
+        let distance = |share: f64| (at(share) - corner.point).norm();
+        at(nearest_share(points_of(corner, piece), distance))
+    });
+    points.min_by(|one, two| {
+        let distance = |point: &Vector<N>| (point - corner.point).norm();
+        distance(one).total_cmp(&distance(two))
+    })
+}
+
+/// Where in `0..=1` a distance is smallest: about the smallest of so many equal steps, narrowed down
+/// between its neighbours by golden section to the digits of a picture.
+pub(crate) fn nearest_share(points: u32, distance: impl Fn(f64) -> f64) -> f64 {
+    let share = |step: u32| f64::from(step) / f64::from(points);
+    let mut best = (0, f64::INFINITY);
+    for step in 0..=points {
+        let here = distance(share(step));
+        if here < best.1 {
+            best = (step, here);
+        }
+    }
+    let mut low = share(best.0.saturating_sub(1));
+    let mut high = share((best.0 + 1).min(points));
+    for _ in 0..NARROWING_STEPS {
+        let inside = (high - low) * GOLDEN;
+        if distance(high - inside) < distance(low + inside) {
+            high = low + inside;
+        } else {
+            low = high - inside;
+        }
+    }
+    let narrowed = 0.5 * (low + high);
+    if distance(narrowed) < best.1 {
+        narrowed
+    } else {
+        share(best.0)
+    }
 }
 
 /// The two axes between which the corner turns most.
@@ -207,4 +261,18 @@ fn plane<const N: usize>(corner: &SharpCorner<N>) -> [usize; 2] {
         }
     }
     most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_nearest_is_found_between_the_points_that_are_drawn() {
+        for place in [0.0, 0.013, 0.5, 0.617, 1.0] {
+            let distance = |share: f64| ((share - place) * 3.0).hypot(0.03);
+            let found = nearest_share(48, distance);
+            assert!((distance(found) - 0.03).abs() < 1e-12, "{place}: {found}");
+        }
+    }
 }

@@ -3,7 +3,7 @@
 //! Source: the report of the judge of poses. Not here: judging.
 
 use crate::setup::Setup;
-use crate::shown::{Shown, quoted, verdict};
+use crate::shown::{Shown, is_zero, quoted, verdict};
 use crate::summary::{clock, every};
 use serde::Serialize;
 use std::fmt::Write;
@@ -72,6 +72,11 @@ pub(crate) struct PoseSummary {
     pub(crate) planning_time_s: Option<f64>,
     pub(crate) violations: u64,
     pub(crate) worst: Vec<String>,
+    /// How many times rows are too far apart to be judged, and the first of them.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub(crate) too_coarse: u64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) coarsest: Vec<String>,
 }
 
 impl PoseSummary {
@@ -134,6 +139,13 @@ impl PoseSummary {
             planning_time_s: None,
             violations: report.violations,
             worst: report.examples.iter().map(ToString::to_string).collect(),
+            too_coarse: report.gaps.count,
+            coarsest: report
+                .gaps
+                .examples
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
         }
     }
 
@@ -179,7 +191,7 @@ impl PoseSummary {
 
 impl Shown for PoseSummary {
     fn passes(&self) -> bool {
-        self.violations == 0
+        self.violations == 0 && self.too_coarse == 0
     }
 
     fn text(&self) -> String {
@@ -251,11 +263,13 @@ impl Shown for PoseSummary {
         if let Some(time) = self.planning_time_s {
             let _ = writeln!(text, "planned in   {time:.3} s");
         }
-        text.push_str(&verdict(self.violations));
+        text.push_str(&verdict(self.violations, self.too_coarse));
         text
     }
 
     fn complaint(&self) -> String {
-        quoted(&self.program, &self.worst, self.violations)
+        let mut text = quoted(&self.program, &self.worst, self.violations);
+        text.push_str(&quoted(&self.program, &self.coarsest, self.too_coarse));
+        text
     }
 }

@@ -5,7 +5,9 @@ use super::corner::{Part, PoseCorner, PoseCornerFinder};
 use crate::plot::canvas::{Anchor, Canvas, Outline, through};
 use crate::plot::chart::{Chart, NORMAL};
 use crate::plot::color;
-use crate::plot::zoom::{INSIDE, WINDOW, draw_bounds, draw_curve_near, draw_nearest};
+use crate::plot::zoom::{
+    INSIDE, WINDOW, draw_bounds, draw_curve_near, draw_nearest, nearest_share,
+};
 use toolglide_kinematics::Vector;
 
 /// Points that are drawn of a piece of motion.
@@ -64,10 +66,8 @@ pub(super) fn draw(
         chart.at(flat.x, flat.y)
     };
     draw_curve_near(canvas, color::MOTION, &through(offsets.iter().map(place)));
-    let nearest = offsets
-        .iter()
-        .min_by(|one, two| one.norm().total_cmp(&two.norm()));
-    draw_nearest(canvas, center, nearest.map(place));
+    let nearest = nearest(finder.part, corner);
+    draw_nearest(canvas, center, nearest.as_ref().map(place));
     canvas.unclip();
     let line = if corner.line > 0 {
         format!(" at line {}", corner.line)
@@ -75,7 +75,7 @@ pub(super) fn draw(
         " at its sharpest corner".to_owned()
     };
     chart.draw_frame(canvas, &format!("{name}{line}, {unit}"));
-    let passed = nearest.map_or(0.0, Vector::norm) * scale;
+    let passed = nearest.map_or(0.0, |nearest| nearest.norm()) * scale;
     chart.draw_name_across(
         canvas,
         &format!(
@@ -119,6 +119,15 @@ impl Plane {
     fn flat(&self, offset: Vector<3>) -> Vector<2> {
         Vector::from([offset.dot(&self.across), offset.dot(&self.upward)])
     }
+}
+
+/// Where the motion stands from the corner when it is nearest, between the points that are drawn.
+fn nearest(part: Part, corner: &PoseCorner) -> Option<Vector<3>> {
+    let points = corner.pieces.iter().map(|piece| {
+        let at = |share: f64| part.of(&piece.at(piece.duration * share)) - corner.point;
+        at(nearest_share(POINTS, |share| at(share).norm()))
+    });
+    points.min_by(|one, two| one.norm().total_cmp(&two.norm()))
 }
 
 /// Where the motion stands from the corner, close enough to look like a curve.

@@ -4,6 +4,7 @@
 //! `a t^2 / 8`, and one that rests at a point within a time `t` is at most `j t^3 / 6` away from it.
 //! Not here: the path.
 
+use super::coarse::bend_distance;
 use super::differences::Recent;
 use super::leg::Leg;
 use crate::limits::Limits;
@@ -17,12 +18,16 @@ pub(super) struct Chord<const N: usize> {
     pub(super) to: Vector<N>,
     pub(super) begin: f64,
     pub(super) duration: f64,
-    /// How far the motion may be from the chord, rounding included.
+    /// How far the motion may be from the chord.
+    pub(super) sagitta: f64,
+    /// The same, rounding included.
     pub(super) slack: f64,
     /// How far rounding may have moved the newer point.
     pub(super) rounding: f64,
-    /// How far each axis may move from rest, or to rest, within the time.
+    /// How far each axis may move from rest, or to rest, within the time, rounding included.
     reach: Vector<N>,
+    /// The most of any axis, without rounding.
+    pub(super) rest_reach: f64,
 }
 
 impl<const N: usize> Chord<N> {
@@ -34,28 +39,31 @@ impl<const N: usize> Chord<N> {
         let duration = end - begin;
         let mean = recent.mean(2);
         let rounding = recent.rounding(end, &to);
+        // Until two chords are known the motion has only just left its rest.
+        let distance = mean.map_or(duration, |mean| {
+            bend_distance(mean.span - duration, duration)
+        });
         let bend = Vector::<N>::from_fn(|axis, _| {
             let (a, j) = (limits.acceleration()[axis], limits.jerk()[axis]);
-            // Until two chords are known the motion has only just left its rest.
-            mean.map_or((j * duration).min(a), |mean| {
-                let near = mean.value[axis].abs() + mean.noise[axis] + j * mean.span;
-                if near < a { near } else { a }
-            })
+            let seen = mean.map_or(0.0, |mean| mean.value[axis].abs() + mean.noise[axis]);
+            let near = seen + j * distance;
+            if near < a { near } else { a }
         });
         let sagitta = bend.norm() * duration * duration / 8.0;
-        let reach = Vector::from_fn(|axis, _| {
+        let far = Vector::<N>::from_fn(|axis, _| {
             let (a, j) = (limits.acceleration()[axis], limits.jerk()[axis]);
-            let far = (0.5 * a).min(j * duration / 6.0) * duration * duration;
-            far * (1.0 + LIMIT_SLACK) + rounding[axis]
+            (0.5 * a).min(j * duration / 6.0) * duration * duration
         });
         Some(Self {
             from,
             to,
             begin: begin - first_time,
             duration,
+            sagitta,
             slack: sagitta * (1.0 + LIMIT_SLACK) + rounding.norm(),
             rounding: rounding.norm(),
-            reach,
+            reach: far * (1.0 + LIMIT_SLACK) + rounding,
+            rest_reach: far.amax(),
         })
     }
 

@@ -12,10 +12,13 @@
 //! - every exact stop is made at its point, and every dwell lasts,
 //! - position, velocity and acceleration never jump,
 //! - it starts and ends at rest, at the start and the end of the path.
+//!
+//! Set-points must also be near enough to each other to show all this, see [`Gaps`].
 
 mod approach;
 mod bernstein;
 mod chord;
+mod coarse;
 mod deviation;
 mod differences;
 mod dynamics;
@@ -34,6 +37,7 @@ mod violation;
 #[cfg(test)]
 mod tests;
 
+pub use coarse::{Gap, Gaps, Unseen};
 pub use judge::Judge;
 pub use report::{Peak, Place, Report};
 pub use setpoints::{SetPointJudge, VerifyError, verify_set_points};

@@ -2,6 +2,7 @@
 //!
 //! Source: "did, with this result" is data, never an error. Not here: how it was found.
 
+use super::coarse::Gaps;
 use super::violation::Violation;
 
 /// How many violations of one kind a report quotes; all are counted.
@@ -88,6 +89,8 @@ pub struct Report<const N: usize> {
     pub violations: u64,
     /// The first few violations of each kind, in the order found.
     pub examples: Vec<Violation>,
+    /// Set-points that are too far apart to be judged; none for pieces.
+    pub gaps: Gaps,
     counts: [u8; Violation::KINDS],
 }
 
@@ -112,14 +115,15 @@ impl<const N: usize> Report<N> {
             feedrate_overshoot: Peak::default(),
             violations: 0,
             examples: Vec::new(),
+            gaps: Gaps::default(),
             counts: [0; Violation::KINDS],
         }
     }
 
-    /// Whether the motion breaks nothing.
+    /// Whether the motion breaks nothing, and its set-points show that.
     #[must_use]
     pub fn passes(&self) -> bool {
-        self.violations == 0
+        self.violations == 0 && self.gaps.is_empty()
     }
 
     pub(super) fn add(&mut self, violation: Violation) {

@@ -2,8 +2,8 @@
 //!
 //! Between two points the motion is unknown, so only what is certain counts: the points themselves
 //! for the distance from the path, mean derivatives for the limits, and for corners and stops the
-//! chord with as much room as the limits give the motion. A legal motion never fails, however its
-//! points are spaced and rounded.
+//! chord with as much room as the limits give the motion. A legal motion never breaks anything, however its
+//! points are spaced and rounded; where they are too far apart to show that, they are called so.
 //!
 //! Source: the judge of pieces, weakened where points say less. Not here: where along the path they
 //! are.
@@ -11,13 +11,14 @@
 use thiserror::Error;
 
 use super::chord::Chord;
+use super::coarse::{Unseen, is_fine, unseen_limits};
 use super::differences::Recent;
 use super::dynamics::{Quantity, note, note_feedrate};
 use super::leg::{is_measurable, length_slack};
 use super::report::{Place, Report};
 use super::route::Route;
-use super::tracker::Tracker;
-use super::violation::Violation;
+use super::tracker::{Finest, Tracker};
+use super::violation::{LETTERS, Violation};
 use crate::error::ToolpathError;
 use crate::limits::Limits;
 use crate::numeric::{LARGEST_MAGNITUDE, LIMIT_SLACK};
@@ -130,9 +131,36 @@ impl<const N: usize> SetPointJudge<N> {
         let place = self.place();
         self.judge_derivatives(place);
         self.judge_speed(place);
+        if !is_fine(chord.duration) {
+            self.judge_spacing(&chord, place);
+        }
         self.tracker.settle(&self.route, &chord);
         self.judge_start();
         Ok(())
+    }
+
+    /// Whether the two newest points are near enough to each other.
+    fn judge_spacing(&mut self, chord: &Chord<N>, place: Place) {
+        let Finest { path, stop } = self.tracker.finest;
+        let hardest = self.limits.acceleration();
+        let leaves = (chord.sagitta > path * (1.0 + LIMIT_SLACK)).then(|| {
+            let (hidden, tolerance) = (chord.sagitta, path);
+            let needed = (8.0 * tolerance / hardest.norm()).sqrt();
+            (Unseen::Path { hidden, tolerance }, needed)
+        });
+        let passes = (chord.rest_reach > stop * (1.0 + LIMIT_SLACK)).then(|| {
+            let (hidden, tolerance) = (chord.rest_reach, stop);
+            let needed = (2.0 * tolerance / hardest.amax()).sqrt();
+            (Unseen::Stop { hidden, tolerance }, needed)
+        });
+        let limits = (0..N).filter_map(|axis| {
+            let letter = LETTERS.get(axis).copied().unwrap_or('?');
+            Some((letter, self.limits.axis(axis)?))
+        });
+        let duration = chord.duration;
+        let unseen = limits.flat_map(|(letter, limits)| unseen_limits(letter, limits, duration));
+        let unseen = unseen.chain(leaves).chain(passes);
+        self.report.gaps.add(chord.begin, duration, place, unseen);
     }
 
     /// The report, once the motion is over.

@@ -8,6 +8,7 @@
 //! Source: the meaning of [`crate::Tolerance`]. Not here: limits of the axes.
 
 use super::chord::Chord;
+use super::coarse::is_fine;
 use super::leg::Leg;
 use super::record::close_leg;
 use super::report::Report;
@@ -33,6 +34,24 @@ pub(super) struct Tracker {
     off_path: bool,
     /// How far the motion has come since it was last within tolerance of its window.
     lost_length: f64,
+    /// Smallest tolerance of the moves along the last chord, and of those that stop there.
+    pub(super) finest: Finest,
+}
+
+/// Smallest tolerances along a chord, mm; infinite where there is none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Finest {
+    pub(super) path: f64,
+    pub(super) stop: f64,
+}
+
+impl Default for Finest {
+    fn default() -> Self {
+        Self {
+            path: f64::INFINITY,
+            stop: f64::INFINITY,
+        }
+    }
 }
 
 /// How far a point is from the window, least over its moves.
@@ -56,7 +75,11 @@ impl Tracker {
         report: &mut Report<N>,
         chord: &Chord<N>,
     ) {
+        let before = self.high;
         self.pass(route, chord);
+        if !is_fine(chord.duration) {
+            self.finest = self.finest(route, before);
+        }
         self.note_corners(route, report, chord);
         let Some(mut nearest) = self.nearest(route, report, chord) else {
             return;
@@ -82,6 +105,18 @@ impl Tracker {
             }
         }
         self.leave(route, report, chord, nearest.share);
+    }
+
+    /// Smallest tolerances of the moves of the window, whose newest was `before` at the last set-point.
+    fn finest<const N: usize>(&self, route: &Route<N>, before: u32) -> Finest {
+        let mut finest = Finest::default();
+        for leg in route.range(route.base(), self.high) {
+            finest.path = finest.path.min(leg.corner_tolerance);
+            if leg.stops && leg.place.mv >= before {
+                finest.stop = finest.stop.min(leg.tolerance);
+            }
+        }
+        finest
     }
 
     /// Largest feedrate that may have applied since the point before; call before [`Self::settle`].

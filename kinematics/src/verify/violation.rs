@@ -260,10 +260,13 @@ impl Violation {
     }
 }
 
+/// Letters of the axes in path order.
+pub(super) const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
 /// Letter of an axis in path order; the number of those beyond the six that have letters.
 fn axis_name(axis: usize) -> String {
-    match ["X", "Y", "Z", "A", "B", "C"].get(axis) {
-        Some(letter) => (*letter).to_owned(),
+    match LETTERS.get(axis) {
+        Some(letter) => letter.to_string(),
         None => axis.to_string(),
     }
 }

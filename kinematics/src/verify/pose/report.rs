@@ -2,6 +2,7 @@
 //!
 //! Source: the house style of messages: place, quantity, value, bound. Not here: finding it.
 
+use super::super::coarse::Gaps;
 use super::super::report::{Peak, Place};
 use thiserror::Error;
 
@@ -64,6 +65,8 @@ pub struct PoseReport {
     pub violations: u64,
     /// The first few violations of each kind, in the order found.
     pub examples: Vec<PoseViolation>,
+    /// Set-points that are too far apart to be judged; none for pieces.
+    pub gaps: Gaps,
     counts: [u8; PoseViolation::KINDS],
 }
 
@@ -88,14 +91,15 @@ impl PoseReport {
             unit_error: 0.0,
             violations: 0,
             examples: Vec::new(),
+            gaps: Gaps::default(),
             counts: [0; PoseViolation::KINDS],
         }
     }
 
-    /// Whether the motion breaks nothing.
+    /// Whether the motion breaks nothing, and its set-points show that.
     #[must_use]
     pub fn passes(&self) -> bool {
-        self.violations == 0
+        self.violations == 0 && self.gaps.is_empty()
     }
 
     pub(super) fn add(&mut self, violation: PoseViolation) {

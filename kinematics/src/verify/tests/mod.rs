@@ -2,6 +2,7 @@
 
 mod awkward;
 mod build;
+mod coarse;
 mod course;
 mod defects;
 mod limits;

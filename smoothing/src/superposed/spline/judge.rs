@@ -4,7 +4,7 @@
 //! Bezier points bound the velocity, and where the motion runs, between the knots. Not here: what is done about
 //! it.
 
-use super::Spline;
+use super::{Differences, Spline};
 use crate::superposed::curve::{Curve, distance_to};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, Vector, largest_multiple};
@@ -37,18 +37,19 @@ impl<const N: usize> Spline<N> {
         limits: &Limits<N>,
     ) -> Option<Excess> {
         let step = self.step;
-        let [a, b, c, d] = self.four(index);
+        let [a, _, _, d] = self.four(index);
         let feedrate = curve.legs()[a.leg..=d.leg]
             .iter()
             .fold(f64::INFINITY, |least, leg| least.min(leg.limits.velocity));
-        let [a, b, c, d] = [a.point, b.point, c.point, d.point];
+        let differences = self.differences(index);
+        let Differences { seconds, third, .. } = differences;
         let slack = 1.0 - LIMIT_SLACK;
-        let accelerations = [c - b * 2.0 + a, d - c * 2.0 + b]
+        let accelerations = seconds
             .map(|second| largest_multiple(&second, limits.acceleration()) * slack * step * step);
-        let jerk =
-            largest_multiple(&(d - c * 3.0 + b * 3.0 - a), limits.jerk()) * slack * step.powi(3);
+        let jerk = largest_multiple(&third, limits.jerk()) * slack * step.powi(3);
         // The velocity is a quadratic; its Bezier points, cut in two, bound the speed and each axis.
-        let [first, middle, last] = [(c - a) * 0.5, c - b, (d - b) * 0.5];
+        let middle = differences.firsts[1];
+        let [first, last] = [0, 1].map(|knot| differences.around(knot));
         let mut speed = f64::INFINITY;
         for velocity in [
             first,

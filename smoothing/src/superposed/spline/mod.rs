@@ -10,7 +10,7 @@ use super::Onward;
 use super::curve::{Control, Curve};
 use super::pace::{Filter, Handover};
 pub(super) use judge::Excess;
-use toolglide_kinematics::{Piece, Sample, Serves};
+use toolglide_kinematics::{Piece, Sample, Serves, Vector};
 
 /// Change of the progress from step to step that is nothing but rounding, relative.
 const STEADY: f64 = 1e-10;
@@ -174,15 +174,16 @@ impl<const N: usize> Spline<N> {
     /// A piece of the motion.
     pub(super) fn piece(&self, index: usize) -> Piece<N> {
         let step = self.step;
-        let [a, b, c, d] = self.four(index);
-        let [a, b, c, d] = [&a.point, &b.point, &c.point, &d.point];
+        let [_, b, c, _] = self.four(index).map(|control| &control.point);
+        let differences = self.differences(index);
+        let Differences { seconds, third, .. } = differences;
         let start = Sample {
-            position: b + (a - b * 2.0 + c) / 6.0,
-            velocity: (c - a) / (2.0 * step),
-            acceleration: (c - b * 2.0 + a) / (step * step),
-            jerk: (d - c * 3.0 + b * 3.0 - a) / step.powi(3),
+            position: b + seconds[0] / 6.0,
+            velocity: differences.around(0) / step,
+            acceleration: seconds[0] / (step * step),
+            jerk: third / step.powi(3),
         };
-        let end = c + (b - c * 2.0 + d) / 6.0;
+        let end = c + seconds[1] / 6.0;
         let [first, .., last] = self.four(index);
         let serves = Serves {
             first: first.serves.first,
@@ -191,7 +192,42 @@ impl<const N: usize> Spline<N> {
         Piece::new(&start, step, end, serves)
     }
 
+    /// The differences of the control points of a piece.
+    fn differences(&self, index: usize) -> Differences<N> {
+        let [a, b, c, d] = self.four(index).map(|control| control.point);
+        Differences::of(&[a, b, c, d])
+    }
+
     fn four(&self, index: usize) -> [&Control<N>; 4] {
         [0, 1, 2, 3].map(|offset| &self.controls[index + offset])
+    }
+}
+
+/// First, second and third differences of four control points.
+///
+/// Neighbours lie so near to each other that their difference is exact, however far from zero both are; the others
+/// are made of these, so that what is left of them has the rounding of steps and not that of coordinates. Two
+/// pieces that share three points have the same second difference between them, to the last digit.
+#[derive(Clone, Copy, Debug)]
+struct Differences<const N: usize> {
+    firsts: [Vector<N>; 3],
+    seconds: [Vector<N>; 2],
+    third: Vector<N>,
+}
+
+impl<const N: usize> Differences<N> {
+    fn of([a, b, c, d]: &[Vector<N>; 4]) -> Self {
+        let firsts = [b - a, c - b, d - c];
+        let seconds = [firsts[1] - firsts[0], firsts[2] - firsts[1]];
+        Self {
+            firsts,
+            seconds,
+            third: seconds[1] - seconds[0],
+        }
+    }
+
+    /// Velocity at a knot times the step: the mean of the differences on both sides.
+    fn around(&self, knot: usize) -> Vector<N> {
+        (self.firsts[knot] + self.firsts[knot + 1]) * 0.5
     }
 }

@@ -54,8 +54,19 @@ impl PoseSetPointJudge<'_> {
             let most = self.bends[index].norm().max(after[index].norm());
             *bulge = BULGE * most * lasts * lasts;
         }
+        let spacing = self.spacing(row.time);
+        if let Some(spacing) = &spacing {
+            for (bulge, shown) in row.bulge.iter_mut().zip(spacing.shown) {
+                *bulge += shown;
+            }
+        }
+        let (tip, tool) = (self.tip.span(), self.tool.span());
         self.tip.advance(&row);
         self.tool.advance(&row);
+        if let Some(spacing) = spacing {
+            let tolerances = [self.tip.finest(tip), self.tool.finest(tool)];
+            self.judge_spacing(&spacing, tolerances);
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 mod axes;
 mod course;
 mod parts;
+mod spacing;
 mod track;
 
 use super::MEETING_SLACK;

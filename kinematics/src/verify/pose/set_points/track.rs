@@ -131,6 +131,23 @@ impl Track {
         Some(self.parts.get(part)?.place)
     }
 
+    /// First and last part on which the newest row may be.
+    pub(super) fn span(&self) -> Option<(usize, usize)> {
+        Some((self.courses.first()?.part, self.courses.last()?.part))
+    }
+
+    /// The smallest tolerance of the parts from the first on which a row may have been to the last on which
+    /// the newest may be; infinite where there are only moves of axes, whose limits are all there is to show.
+    pub(super) fn finest(&self, before: Option<(usize, usize)>) -> f64 {
+        let (first, last) = self.span().unwrap_or_default();
+        let first = before.map_or(first, |(first, _)| first);
+        let parts = self.parts.get(first..=last).unwrap_or_default().iter();
+        let of_tool = parts.filter(|part| !part.is_of_axes());
+        of_tool
+            .map(|part| part.at_end)
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Takes the next row.
     pub(super) fn advance(&mut self, row: &Row) {
         if self.parts.is_empty() {
