@@ -3,7 +3,7 @@
 //! Not here: how values are read, and what a machine or a program makes of them.
 
 use crate::planner::METHODS;
-use crate::values::{PerAxis, coordinates, mode, per_axis, positive};
+use crate::values::{PerAxis, coordinates, mode, parameter, per_axis, positive};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use toolglide_machines::ModeConfig;
 use toolglide_optimal::Effort;
 
 /// Names of the languages of programs.
-const DIALECTS: [&str; 4] = ["ngc", "fanuc", "840d", "cl"];
+const DIALECTS: [&str; 5] = ["ngc", "fanuc", "840d", "cl", "printer"];
 
 /// Plans smooth motion for machine tools and judges it.
 #[derive(Debug, Parser)]
@@ -81,6 +81,10 @@ pub(crate) struct JobArgs {
     /// Tools of the machine: a tool table as LinuxCNC writes it, in mm.
     #[arg(long, value_name = "FILE.tbl")]
     pub(crate) tool_table: Option<PathBuf>,
+    /// Value of a parameter that only the machine or the operator knows, as in _hal[cut.feed]=1200 or 31=5. May be
+    /// given several times.
+    #[arg(long = "parameter", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) parameters: Vec<(String, f64)>,
     /// Print one JSON object instead of the summary.
     #[arg(long)]
     pub(crate) json: bool,
@@ -207,6 +211,10 @@ pub(crate) struct CheckArgs {
     /// Skip what the program may ask for but a planner need not know, with warnings.
     #[arg(long)]
     pub(crate) lenient: bool,
+    /// Value of a parameter that only the machine or the operator knows, as in _hal[cut.feed]=1200 or 31=5. May be
+    /// given several times.
+    #[arg(long = "parameter", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) parameters: Vec<(String, f64)>,
     /// Print one JSON object instead of the text.
     #[arg(long)]
     pub(crate) json: bool,

@@ -4,7 +4,7 @@
 
 use crate::args::CheckArgs;
 use crate::error::{CliError, DONE, REFUSED};
-use crate::source::{Source, subroutines, tools};
+use crate::source::{Source, poses_with_parameters, subroutines, tools, with_parameters};
 use crate::survey::{Remark, Survey};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet, Title};
 use std::io::{BufRead, Write};
@@ -41,7 +41,10 @@ pub(crate) fn check(
         err,
         quiet: args.json,
     };
-    if matches!(language, Language::Ngc | Language::Fanuc) {
+    if matches!(
+        language,
+        Language::Ngc | Language::Fanuc | Language::Printer
+    ) {
         let program = Program::new(source.reader, &source.name, settings)
             .in_language(language)
             .with_tools(tools)
@@ -49,13 +52,13 @@ pub(crate) fn check(
             .with_rotary_axes()
             .with_secondary_axes()
             .past_refusals();
-        seen.read(program)?;
+        seen.read(with_parameters(program, &args.parameters)?)?;
     } else {
         let poses = Poses::new(source.reader, &source.name, settings, language)
             .with_tools(tools)
             .with_subroutines(subroutines(&args.program))
             .past_refusals();
-        seen.read_poses(poses)?;
+        seen.read_poses(poses_with_parameters(poses, &args.parameters)?)?;
     }
     let survey = seen.survey;
     let text = if args.json {
@@ -94,6 +97,7 @@ impl Seen<'_> {
         survey.tools = program.tools_used().collect();
         survey.name_codes(program.codes());
         survey.features = program.features().map(str::to_owned).collect();
+        survey.filament_mm = program.filament();
         survey.warnings = program.warnings().iter().map(Remark::of_warning).collect();
         survey.more_warnings = program.more_warnings();
         self.finish(program.warnings());

@@ -61,7 +61,7 @@ where
         lanes.push(lane(EXACT_STOP)?);
     }
     let mut feeds = drawing.is_some().then(|| Feeds::new(chosen.clone()));
-    let mut moves = moves::<N>(&args.job, setup, source);
+    let mut moves = moves::<N>(&args.job, setup, source)?;
     let mut batch = Vec::new();
     loop {
         let more = moves.fill(&mut batch)?;

@@ -12,7 +12,7 @@ use crate::plot::{Caption, Plot};
 use crate::set_points::SetPoints;
 use crate::setup::Setup;
 use crate::shown::{show, show_beside_rows};
-use crate::source::{Source, subroutines};
+use crate::source::{Source, subroutines, with_parameters};
 use crate::summary::{Summary, clock};
 use crate::travel::{OnAxes, Travel};
 use std::io::{BufRead, Write};
@@ -42,7 +42,7 @@ pub(crate) fn moves<const N: usize>(
     job: &JobArgs,
     setup: &Setup,
     source: Source,
-) -> Moves<impl BufRead + use<N>, N> {
+) -> Result<Moves<impl BufRead + use<N>, N>, CliError> {
     let settings = Settings {
         tolerance: setup.tolerance,
         override_tolerance: setup.override_tolerance,
@@ -51,16 +51,17 @@ pub(crate) fn moves<const N: usize>(
         lenient: job.lenient,
         ..Settings::new(setup.tolerance)
     };
-    Moves {
-        program: Program::new(source.reader, &source.name, settings)
-            .in_language(source.language)
-            .for_machine(&setup.machine)
-            .with_tools(setup.tools.clone())
-            .with_reference_points(&setup.reference_points)
-            .with_subroutines(subroutines(&job.program)),
+    let program = Program::new(source.reader, &source.name, settings)
+        .in_language(source.language)
+        .for_machine(&setup.machine)
+        .with_tools(setup.tools.clone())
+        .with_reference_points(&setup.reference_points)
+        .with_subroutines(subroutines(&job.program));
+    Ok(Moves {
+        program: with_parameters(program, &job.parameters)?,
         name: source.name,
         travel: Travel::of(&setup.axes),
-    }
+    })
 }
 
 /// Tells what the reader of the program wants known.
@@ -95,7 +96,7 @@ where
         let drawn = files.drawing.is_some();
         let destination = files.rows.destination(out);
         let outcome = Pipeline {
-            moves: moves(&args.job, setup, source),
+            moves: moves(&args.job, setup, source)?,
             planner: planner(method, start, limits, &tuning)?,
             judge: Judge::new(start, limits),
             set_points: SetPoints::new(setup.period, &setup.axes, start, destination),

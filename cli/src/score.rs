@@ -53,7 +53,7 @@ where
     let name = source.name.clone();
     let limits = setup.limits::<N>();
     let mut windows = Windows::new(setup.start::<N>(), limits);
-    let mut moves = moves::<N>(&args.job, setup, source);
+    let mut moves = moves::<N>(&args.job, setup, source)?;
     while let Some(next) = moves.next()? {
         windows.push(&next).map_err(|reason| CliError::Plan {
             program: name.clone(),

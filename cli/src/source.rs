@@ -5,7 +5,7 @@ use crate::progress::Watched;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-use toolglide_program::{Language, ToolTable};
+use toolglide_program::{ArithmeticError, Language, Poses, Program, ToolTable};
 
 /// Bytes that are read at once.
 const CHUNK: usize = 1 << 16;
@@ -104,6 +104,41 @@ pub(crate) fn tools(path: Option<&Path>) -> Result<ToolTable, CliError> {
     ToolTable::parse(&text).map_err(|reason| CliError::ToolTable {
         file: path.to_owned(),
         reason,
+    })
+}
+
+/// A refusal of a parameter that the command line gives.
+pub(crate) fn refused_parameter(name: &str, reason: &ArithmeticError) -> CliError {
+    CliError::Option {
+        option: "--parameter",
+        value: name.to_owned(),
+        bound: reason.to_string(),
+    }
+}
+
+/// Gives a program the parameters of the command line.
+pub(crate) fn with_parameters<R: BufRead>(
+    program: Program<R>,
+    parameters: &[(String, f64)],
+) -> Result<Program<R>, CliError> {
+    parameters
+        .iter()
+        .try_fold(program, |program, (name, value)| {
+            program
+                .with_parameter(name, *value)
+                .map_err(|reason| refused_parameter(name, &reason))
+        })
+}
+
+/// Gives a program of tool poses the parameters of the command line.
+pub(crate) fn poses_with_parameters<R: BufRead>(
+    poses: Poses<R>,
+    parameters: &[(String, f64)],
+) -> Result<Poses<R>, CliError> {
+    parameters.iter().try_fold(poses, |poses, (name, value)| {
+        poses
+            .with_parameter(name, *value)
+            .map_err(|reason| refused_parameter(name, &reason))
     })
 }
 

@@ -163,7 +163,7 @@ where
             Ok((Lane::new(planner, Judge::new(start, limits)), oscillators))
         })
         .collect::<Result<Vec<_>, CliError>>()?;
-    let mut moves = moves::<N>(&args.job, setup, source);
+    let mut moves = moves::<N>(&args.job, setup, source)?;
     let mut batch = Vec::new();
     loop {
         let more = moves.fill(&mut batch)?;

@@ -34,6 +34,9 @@ pub(crate) struct Survey {
     pub(crate) largest_mm: Option<[f64; 3]>,
     pub(crate) least_feedrate_mm_min: Option<f64>,
     pub(crate) largest_feedrate_mm_min: Option<f64>,
+    /// Filament that a printer pushes out, less what it draws back; none for other programs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) filament_mm: Option<f64>,
     pub(crate) tools: Vec<u32>,
     pub(crate) codes: Vec<(String, u64)>,
     pub(crate) features: Vec<String>,
@@ -245,6 +248,9 @@ impl Survey {
             (self.least_feedrate_mm_min, self.largest_feedrate_mm_min)
         {
             row("feedrate", format!("{least:.1} to {largest:.1} mm/min"));
+        }
+        if let Some(length) = self.filament_mm {
+            row("filament", format!("{length:.3} mm"));
         }
         if !self.tools.is_empty() {
             let tools: Vec<String> = self.tools.iter().map(|tool| format!("T{tool}")).collect();

@@ -61,6 +61,15 @@ pub(crate) fn mode(text: &str) -> Result<ModeConfig, String> {
     })
 }
 
+/// A parameter of a program and its value.
+pub(crate) fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text
+        .rsplit_once('=')
+        .ok_or_else(|| format!("\"{text}\" is no NAME=VALUE"))?;
+    let value = number(value.trim())?;
+    Ok((name.trim().to_owned(), value))
+}
+
 /// Numbers between commas.
 pub(crate) fn coordinates(text: &str) -> Result<PerAxis, String> {
     text.split(',')
@@ -78,6 +87,14 @@ mod tests {
         assert_eq!(per_axis("500"), Ok(PerAxis(vec![500.0])));
         assert_eq!(per_axis("1, 2,3e2"), Ok(PerAxis(vec![1.0, 2.0, 300.0])));
         assert_eq!(coordinates("-1,0,2"), Ok(PerAxis(vec![-1.0, 0.0, 2.0])));
+    }
+
+    #[test]
+    fn a_parameter_is_a_name_and_a_number() {
+        let given = parameter("_hal[cut.feed] = -1.5");
+        assert_eq!(given, Ok(("_hal[cut.feed]".to_owned(), -1.5)));
+        assert!(parameter("_hal[cut.feed]").is_err(), "no value");
+        assert!(parameter("5=x").is_err(), "no number");
     }
 
     #[test]

@@ -68,7 +68,7 @@ where
     let resolution = resolution::<N>(file, setup)?;
     let judge = SetPointJudge::new(setup.start::<N>(), setup.limits(), resolution);
     let mut follower = Follower {
-        moves: moves(&args.job, setup, source),
+        moves: moves(&args.job, setup, source)?,
         judge,
         fastest: setup.limits::<N>().velocity().norm(),
         at: setup.start(),

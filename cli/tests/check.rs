@@ -94,10 +94,7 @@ fn subroutines_stand_in_files_beside_the_program() {
 #[test]
 fn warnings_are_shown_with_their_line_too() {
     let folder = Folder::new();
-    let program = folder.write(
-        "part.ngc",
-        "G21 F600\nM106 S255\nG1 X5 E0.2\nT3 M6 G43\nM2\n",
-    );
+    let program = folder.write("part.ngc", "G21 F600\nM106 S255\nG1 X5\nT3 M6 G43\nM2\n");
     let run = toolglide(&["check", &program]);
     assert_eq!(run.code, 0, "{}", run.err);
     insta::assert_snapshot!(run.err.replace(&program, "part.ngc"));

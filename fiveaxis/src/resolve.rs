@@ -104,7 +104,7 @@ impl<'m> Resolver<'m> {
                 rotary,
                 tip,
             } if tip || !has_linear => {
-                let near = self.words(index, None, rotary)?;
+                let near = self.words(index, None, rotary, next.secondary())?;
                 let tool = self.machine.forward(&near).map_err(machine)?.orientation();
                 let pose = ToolPose::new(linear, tool).map_err(path)?;
                 let axes = self.machine.inverse(&pose, &near).map_err(machine)?;
@@ -119,7 +119,7 @@ impl<'m> Resolver<'m> {
                 (pose, axes)
             }
             PoseEnd::Axes { linear, rotary, .. } => {
-                let end = self.words(index, Some(linear), rotary)?;
+                let end = self.words(index, Some(linear), rotary, next.secondary())?;
                 self.check_travel(&end).map_err(machine)?;
                 let start = self.at;
                 let turns = self.turns(&end);
@@ -185,14 +185,15 @@ impl<'m> Resolver<'m> {
             })
     }
 
-    /// Whether a rotary axis has to turn to be at `end`.
+    /// Whether a rotary axis, or one that no tool pose knows, has to move to be at `end`.
     fn turns(&self, end: &AxisVector) -> bool {
         self.machine
             .axes()
             .iter()
             .zip(self.at.iter().zip(end.iter()))
             .any(|(axis, (start, end))| {
-                axis.kind == AxisKind::Rotary && (end - start).abs() > SAME_ORIENTATION
+                let apart = axis.kind == AxisKind::Rotary || matches!(axis.name, 'U' | 'V' | 'W');
+                apart && (end - start).abs() > SAME_ORIENTATION
             })
     }
 
@@ -210,14 +211,16 @@ impl<'m> Resolver<'m> {
         index: u32,
         linear: Option<Vector<3>>,
         rotary: [f64; 3],
+        secondary: [f64; 3],
     ) -> Result<AxisVector, FiveAxisError> {
         let axes = self.machine.axes();
         let mut positions = self.at;
-        let mut words: Vec<(char, f64)> = Vec::with_capacity(6);
+        let mut words: Vec<(char, f64)> = Vec::with_capacity(9);
         if let Some(linear) = linear {
             words.extend(['X', 'Y', 'Z'].into_iter().zip(linear.iter().copied()));
         }
         words.extend(['A', 'B', 'C'].into_iter().zip(rotary));
+        words.extend(['U', 'V', 'W'].into_iter().zip(secondary));
         for (letter, value) in words {
             match axes.iter().position(|axis| axis.name == letter) {
                 Some(axis) => positions[axis] = value,

@@ -25,15 +25,17 @@ pub const CLOSURE: f64 = 1e-11;
 /// lost in cycle time stays below a part in a million.
 pub const SEARCH_PRECISION: f64 = 1e-7;
 
-/// Start and end radius of an arc may always differ by this, mm: programs round their centres to
-/// three decimals.
-pub const ARC_RADIUS_MISMATCH: f64 = 0.005;
+/// Start and end radius of an arc may always differ by this, mm: two roundings of both coordinates to a
+/// thousandth of an inch, which is what LinuxCNC grants programs in inches. What a program in mm may do is the
+/// business of its reader.
+pub const ARC_RADIUS_MISMATCH: f64 = 2.0 * 0.001 * std::f64::consts::SQRT_2 * 25.4;
 
 /// Start and end radius of an arc may differ by this share of the radius.
 pub const ARC_RADIUS_MISMATCH_SHARE: f64 = 0.001;
 
-/// Start and end radius of an arc may never differ by more than this, mm.
-pub const ARC_RADIUS_MISMATCH_MOST: f64 = 0.5;
+/// Start and end radius of an arc may never differ by more than this, mm: a hundred times what they always may,
+/// as for LinuxCNC.
+pub const ARC_RADIUS_MISMATCH_MOST: f64 = 100.0 * ARC_RADIUS_MISMATCH;
 
 /// A tool orientation may miss unit length by this before it is refused instead of normalised:
 /// programs write four decimals and more.

@@ -51,6 +51,7 @@ pub struct PoseMove {
     tolerance: Tolerance,
     stop: bool,
     line: u32,
+    secondary: [f64; 3],
 }
 
 impl PoseMove {
@@ -112,7 +113,26 @@ impl PoseMove {
             tolerance,
             stop,
             line: 0,
+            secondary: [0.0; 3],
         })
+    }
+
+    /// The same move, on a machine with a second set of straight axes: their words U, V and W, mm.
+    ///
+    /// # Errors
+    /// [`ToolpathError::NotFinite`] for words that are not finite.
+    pub fn with_secondary(mut self, words: [f64; 3]) -> Result<Self, ToolpathError> {
+        if words.iter().any(|word| !word.is_finite()) {
+            return Err(ToolpathError::NotFinite);
+        }
+        self.secondary = words;
+        Ok(self)
+    }
+
+    /// Words U, V and W, mm; those that were never programmed are 0.
+    #[must_use]
+    pub fn secondary(&self) -> [f64; 3] {
+        self.secondary
     }
 
     /// The same move, coming to rest exactly at its end.

@@ -4,19 +4,26 @@
 
 use crate::block::{AXES, Block, OFFSETS};
 use crate::codes::{Distance, Motion, Plane};
-use crate::error::Fault;
+use crate::error::{Fault, Notice};
 use crate::lower::Lowering;
-use crate::modal::whole;
+use crate::modal::{Modal, whole};
 use crate::place::Span;
 use crate::reason::Reason;
-use crate::units::within_reach;
+use crate::units::{Units, within_reach};
 use crate::uses::motion_span;
-use toolglide_kinematics::numeric::SHORTEST_LENGTH;
-use toolglide_kinematics::{Arc, Vector};
+use toolglide_kinematics::numeric::{ARC_RADIUS_MISMATCH_SHARE, SHORTEST_LENGTH};
+use toolglide_kinematics::{Arc, ToolpathError, Vector};
 
 /// A radius may be too short by this to reach from start to end, mm; the arc is then half a
 /// circle. Programs round their coordinates and radii to three decimals.
 const RADIUS_SHORTFALL: f64 = 0.005;
+
+/// Radii that differ by no more than this, mm, are those of an arc whose centre was rounded to three decimals: it
+/// goes evenly from one to the other, and nobody would see it.
+const UNSEEN_MISMATCH: f64 = 0.005;
+
+/// How often the rounding of coordinates the radii may differ at most, however large they are.
+const MOST_ROUNDINGS: f64 = 100.0;
 
 /// Most turns of one arc: more than a day of turns a machine could make.
 const MOST_TURNS: u32 = 1_000_000;
@@ -65,14 +72,15 @@ impl Plane {
     }
 }
 
-/// The arc of a block, and the word to blame for its shape.
+/// The arc of a block, and by how much its radii differ as they are written, mm, where that is more than a
+/// rounding to three decimals.
 pub(crate) fn arc(
     block: &Block,
     state: &Lowering,
     motion: Motion,
     start: Vector<3>,
     end: Vector<3>,
-) -> Result<Arc<3>, Fault> {
+) -> Result<(Arc<3>, Option<f64>), Fault> {
     let modal = &state.modal;
     let plane = modal.plane;
     let axes = plane.axes();
@@ -87,7 +95,10 @@ pub(crate) fn arc(
     let counter_clockwise = counter_clockwise != frame.mirrors(axes);
     let (center, blamed) = center(block, state, counter_clockwise, start, end)?;
     let turns = whole(block, b'P', "number of turns", 1, MOST_TURNS)?.unwrap_or(1);
+    let (center, mismatch) = corrected(center, start, end, modal)
+        .map_err(|error| Fault::new(blamed, Reason::Path(error)))?;
     Arc::about(start, end, center, axes, counter_clockwise, turns - 1)
+        .map(|arc| (arc, mismatch))
         .map_err(|error| Fault::new(blamed, Reason::Path(error)))
 }
 
@@ -151,7 +162,10 @@ fn center_by_offsets(
         let letter = OFFSETS[axis];
         let name = char::from(letter);
         let at = |reason| Fault::new(block.span(letter), reason);
-        match (block.get(letter), modal.arc_distance) {
+        match (
+            block.get(letter),
+            block.distance_of(letter, modal.arc_distance),
+        ) {
             (Some(value), Distance::Absolute) => {
                 center[axis] = modal.units.bounded_length(name, value).map_err(at)?;
             }
@@ -167,6 +181,80 @@ fn center_by_offsets(
         }
     }
     Ok(state.offsets.on_machine(center))
+}
+
+/// By how much the radii at both ends of an arc may differ, mm: LinuxCNC's rule, which is the rounding of its
+/// coordinates, or a thousandth of the radius, which may not exceed a hundred roundings.
+pub(crate) fn allowed_mismatch(units: Units, radius: f64) -> f64 {
+    let rounding = units.arc_rounding();
+    let share = ARC_RADIUS_MISMATCH_SHARE * radius;
+    rounding.max(share).min(MOST_ROUNDINGS * rounding)
+}
+
+/// The centre of an arc whose coordinates were rounded, moved so that both ends are on one circle; where it would
+/// have to go farther than the rounding, as for almost whole circles, it stays, and the radius goes evenly from
+/// that of the start to that of the end.
+fn corrected(
+    center: Vector<3>,
+    start: Vector<3>,
+    end: Vector<3>,
+    modal: &Modal,
+) -> Result<(Vector<3>, Option<f64>), ToolpathError> {
+    let [first, second] = modal.plane.axes();
+    let radius = |point: Vector<3>| {
+        let (along, across) = (point[first] - center[first], point[second] - center[second]);
+        along.hypot(across)
+    };
+    let (start_radius, end_radius) = (radius(start), radius(end));
+    if start_radius.min(end_radius) <= SHORTEST_LENGTH {
+        // There is no circle, which is said of the arc itself.
+        return Ok((center, None));
+    }
+    let mismatch = (start_radius - end_radius).abs();
+    let larger = start_radius.max(end_radius);
+    let allowed = allowed_mismatch(modal.units, larger);
+    if mismatch > allowed {
+        return Err(ToolpathError::ArcMismatch {
+            start_radius,
+            end_radius,
+            allowed,
+        });
+    }
+    let chord = [end[first] - start[first], end[second] - start[second]];
+    let length = chord[0].hypot(chord[1]);
+    if !is_rounded(start_radius, end_radius) || length <= SHORTEST_LENGTH {
+        return Ok((center, None));
+    }
+    let way = [chord[0] / length, chord[1] / length];
+    let middle = [
+        0.5 * (start[first] + end[first]) - center[first],
+        0.5 * (start[second] + end[second]) - center[second],
+    ];
+    let step = middle[0] * way[0] + middle[1] * way[1];
+    let mut there = center;
+    if step.abs() <= modal.units.arc_rounding() {
+        there[first] += step * way[0];
+        there[second] += step * way[1];
+    }
+    Ok((there, Some(mismatch)))
+}
+
+impl Lowering {
+    /// Tells of the first arc whose coordinates were rounded.
+    pub(crate) fn tell_rounding(&mut self, block: &Block, mismatch: Option<f64>) {
+        if let Some(mismatch) = mismatch
+            && !std::mem::replace(&mut self.rounding_told, true)
+        {
+            let notice = Notice::RoundedArc { mismatch };
+            self.own_remark = Some((motion_span(block), notice));
+        }
+    }
+}
+
+/// Whether radii differ by more than a rounding to three decimals.
+fn is_rounded(start_radius: f64, end_radius: f64) -> bool {
+    let share = ARC_RADIUS_MISMATCH_SHARE * start_radius.max(end_radius);
+    (start_radius - end_radius).abs() > UNSEEN_MISMATCH.max(share)
 }
 
 /// The centre from a radius: of the two circles through both ends, the one that gives the shorter

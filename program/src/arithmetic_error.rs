@@ -98,7 +98,7 @@ pub enum ArithmeticError {
         name: Box<str>,
     },
     /// A parameter that has no value yet.
-    #[error("parameter #<{name}> has no value: it was never set here")]
+    #[error("parameter #<{name}> has no value: {}", why_unset(name))]
     NeverSet {
         /// The parameter.
         name: Box<str>,
@@ -118,4 +118,13 @@ pub enum ArithmeticError {
         /// Most of them.
         bound: usize,
     },
+}
+
+/// Why a parameter has no value.
+fn why_unset(name: &str) -> &'static str {
+    if name.starts_with("_hal[") || name.starts_with("_ini[") {
+        "only the machine knows it; give it with --parameter NAME=VALUE"
+    } else {
+        "it was never set here"
+    }
 }

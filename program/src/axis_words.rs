@@ -1,12 +1,13 @@
 //! Moves of axis words as moves of the tool in the workpiece.
 //!
 //! Source: `G43.4`, `G93` and rotary words as LinuxCNC and others read them; a feedrate of rotary axes
-//! alone is in degrees a minute. Arcs become chords, and the rotary axes go evenly along them. Not here:
+//! alone is in degrees a minute, one of U, V and W alone in mm along them. Arcs become chords, and the rotary axes go evenly along them. Not here:
 //! reading the words.
 
 use crate::chords::count;
 use crate::codes::{FeedMode, Motion};
 use crate::error::ProgramError;
+use crate::others::{OTHERS, ROTARY};
 use crate::program::Program;
 use crate::splines::CHORD_SHARE;
 use std::collections::VecDeque;
@@ -25,25 +26,26 @@ pub(crate) struct AxisWords<R> {
 /// What a block says about all its moves.
 #[derive(Clone, Copy)]
 struct Block {
-    from: [f64; 3],
-    to: [f64; 3],
+    from: [f64; 6],
+    to: [f64; 6],
     /// How long a feed move of the block takes, s, if that is what it says.
     duration: Option<f64>,
-    /// Speed of rotary axes alone, degrees/s.
+    /// Speed of rotary axes alone, degrees/s, and of straight axes U, V and W alone, mm/s.
     turning: Option<f64>,
+    sliding: Option<f64>,
 }
 
 impl<R: BufRead> AxisWords<R> {
     pub(crate) fn new(program: Program<R>) -> Self {
         Self {
-            program: program.with_rotary_axes(),
+            program: program.with_rotary_axes().with_secondary_axes(),
             waiting: VecDeque::new(),
         }
     }
 
     /// Reads a line into poses.
     fn read_line(&mut self) -> Result<(), ProgramError> {
-        let from = self.program.lowering.rotary;
+        let from = self.program.lowering.others.at;
         let start = self.program.lowering.position;
         self.program.read_line()?;
         let state = &self.program.lowering;
@@ -52,9 +54,10 @@ impl<R: BufRead> AxisWords<R> {
         let inverse = state.modal.feed_mode == FeedMode::InverseTime;
         let block = Block {
             from,
-            to: state.rotary,
+            to: state.others.at,
             duration: rate.filter(|_| inverse && feeds).map(|rate| 60.0 / rate),
             turning: state.modal.feedrate.filter(|_| feeds && !inverse),
+            sliding: state.modal.feedrate.filter(|_| feeds && !inverse),
         };
         let (tip, tool) = (state.tip, state.offsets.tool());
         let turning = block
@@ -86,22 +89,22 @@ fn poses(
     shown: impl Fn(Vector<3>) -> Vector<3>,
     into: &mut VecDeque<PoseMove>,
 ) -> Result<(), ToolpathError> {
-    let turned = |share: f64| {
-        std::array::from_fn(|axis| {
-            let degrees = block.from[axis] + share * (block.to[axis] - block.from[axis]);
-            degrees.to_radians()
-        })
-    };
+    let at =
+        |share: f64, axis: usize| block.from[axis] + share * (block.to[axis] - block.from[axis]);
+    let turned = |share: f64| std::array::from_fn(|axis| at(share, axis).to_radians());
+    let slid = |share: f64| std::array::from_fn(|axis| at(share, ROTARY + axis));
     // Of several moves in one block the first turns.
     let end_turn = turned(1.0);
-    let finished = |end, feed, tolerance| -> Result<PoseMove, ToolpathError> {
-        Ok(PoseMove::new(end, feed, tolerance)?.from_line(step.line()))
+    let finished = |end, feed, tolerance, share| -> Result<PoseMove, ToolpathError> {
+        PoseMove::new(end, feed, tolerance)?
+            .from_line(step.line())
+            .with_secondary(slid(share))
     };
     match step.path() {
         Path::Dwell { duration } => {
             let duration = *duration;
             let end = PoseEnd::Dwell { duration };
-            into.push_back(finished(end, PoseFeed::Rapid, step.tolerance())?);
+            into.push_back(finished(end, PoseFeed::Rapid, step.tolerance(), 1.0)?);
         }
         Path::Arc(arc) => {
             let (first, last) = arc.radii();
@@ -119,7 +122,7 @@ fn poses(
                     rotary: turned(share),
                     tip,
                 };
-                let next = finished(end, feed, kept)?;
+                let next = finished(end, feed, kept, share)?;
                 let stops = chord == chords && step.stops();
                 into.push_back(if stops { next.with_exact_stop() } else { next });
             }
@@ -127,22 +130,27 @@ fn poses(
         _ => {
             let there = step.end(start);
             let still = (there - start).norm() <= 0.0;
-            let largest = (0..3).fold(0.0_f64, |most, axis| {
-                most.max((block.to[axis] - block.from[axis]).abs())
-            });
+            let travel = |axis: usize| (block.to[axis] - block.from[axis]).abs();
+            let largest = (0..ROTARY).map(travel).fold(0.0_f64, f64::max);
+            let slide = (ROTARY..OTHERS.len()).map(travel).fold(0.0_f64, f64::hypot);
             let feed = match (block.duration, block.turning) {
                 (Some(duration), _) if single => PoseFeed::Duration(duration),
                 (_, Some(speed)) if single && still && speed > 0.0 && largest > 0.0 => {
                     PoseFeed::Duration(largest / speed)
                 }
-                _ => speed(step.feedrate()),
+                _ => match block.sliding.filter(|_| single && still && slide > 0.0) {
+                    Some(speed) if speed > 0.0 && largest <= 0.0 => {
+                        PoseFeed::Duration(slide / speed)
+                    }
+                    _ => speed(step.feedrate()),
+                },
             };
             let end = PoseEnd::Axes {
                 linear: shown(there),
                 rotary: end_turn,
                 tip,
             };
-            let next = finished(end, feed, step.tolerance())?;
+            let next = finished(end, feed, step.tolerance(), 1.0)?;
             into.push_back(if step.stops() {
                 next.with_exact_stop()
             } else {

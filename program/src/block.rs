@@ -5,10 +5,10 @@
 use crate::code::Code;
 use crate::codes::{
     Distance, FeedMode, Group, Motion, Once, PathControl, Plane, Saving, Side, Stop, Subprogram,
-    ToolLength,
+    ToolLength, Way,
 };
 use crate::corners::CornerKind;
-use crate::error::{Fault, Remark};
+use crate::error::{Fault, Notice, Remark};
 use crate::lexer::{Assignment, Lexer, Word};
 use crate::parameters::Values;
 use crate::place::Span;
@@ -63,6 +63,8 @@ pub(crate) struct Block {
     present: u32,
     values: [f64; LETTERS],
     spans: [Span; LETTERS],
+    /// Words that say themselves whether they are places or steps.
+    ways: [Option<Way>; LETTERS],
     pub(crate) taken: u32,
     pub(crate) takers: [(Code, Span); Group::COUNT],
     /// Code that strict reading refuses, with its reason; lenient reading skips it.
@@ -76,6 +78,11 @@ pub(crate) struct Block {
     pub(crate) secondary: bool,
     /// Its name; empty where nobody gave one.
     pub(crate) machine: Arc<str>,
+    /// Whether a word said that an axis which is not there is at 0, and of which that was told.
+    pub(crate) absent: bool,
+    absent_noted: u32,
+    /// Whether the program is one of a printer, whose E is its extruder.
+    pub(crate) printer: bool,
     /// What was met beside codes.
     pub(crate) features: u8,
     /// How often each code was met, for `G` and `M` by ten times its number, as far as one was met.
@@ -109,6 +116,7 @@ impl Block {
             present: 0,
             values: [0.0; LETTERS],
             spans: [Span::default(); LETTERS],
+            ways: [None; LETTERS],
             taken: 0,
             takers: [(Code::new(b'G', 0), Span::default()); Group::COUNT],
             foreign: None,
@@ -117,6 +125,9 @@ impl Block {
             rotary: false,
             secondary: false,
             machine: Arc::from(""),
+            absent: false,
+            absent_noted: 0,
+            printer: false,
             features: 0,
             counts: [Vec::new(), Vec::new()],
             motion: None,
@@ -144,8 +155,10 @@ impl Block {
 
     fn clear(&mut self) {
         self.present = 0;
+        self.ways = [None; LETTERS];
         self.taken = 0;
         self.foreign = None;
+        self.absent = false;
         self.words = 0;
         self.assignments.clear();
         self.motion = None;
@@ -195,6 +208,7 @@ impl Block {
         assignments: &mut Vec<Assignment>,
     ) -> Result<(), Fault> {
         let mut lexer = Lexer::new(line, values, assignments);
+        lexer.extrudes = self.printer;
         while let Some(word) = lexer.word()? {
             self.add(word, settings, remarks)?;
         }
@@ -219,7 +233,7 @@ impl Block {
         match word.letter {
             b'G' => self.preparatory(word, settings, remarks),
             b'M' => self.miscellaneous(word, settings, remarks),
-            _ => self.value(word, settings),
+            _ => self.value(word, settings, remarks),
         }
     }
 
@@ -281,6 +295,25 @@ impl Block {
         self.spans[index(letter)]
     }
 
+    /// Makes a word say whether its number is a place or a step.
+    pub(crate) fn set_way(&mut self, letter: u8, way: Way) {
+        self.ways[index(letter)] = Some(way);
+    }
+
+    /// What a word says about its number, if it does.
+    pub(crate) fn way(&self, letter: u8) -> Option<Way> {
+        self.ways[index(letter)]
+    }
+
+    /// Whether the number of a word is a place or a step, in a distance mode.
+    pub(crate) fn distance_of(&self, letter: u8, mode: Distance) -> Distance {
+        match self.way(letter) {
+            None => mode,
+            Some(Way::Incremental) => Distance::Incremental,
+            Some(_) => Distance::Absolute,
+        }
+    }
+
     /// The code of a group in this block, and where it stands.
     pub(crate) fn taker(&self, group: Group) -> Option<(Code, Span)> {
         (self.taken & 1 << group as u32 != 0).then(|| self.takers[group as usize])
@@ -297,7 +330,12 @@ impl Block {
         self.foreign.as_ref().map(|(code, _)| *code)
     }
 
-    fn value(&mut self, word: Word, settings: &Settings) -> Result<(), Fault> {
+    fn value(
+        &mut self,
+        word: Word,
+        settings: &Settings,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
         let letter = char::from(word.letter);
         if self.has(word.letter) {
             return Err(Fault::new(word.span, Reason::Repeated { letter }));
@@ -308,6 +346,15 @@ impl Block {
             b'U'..=b'W' => self.secondary,
             _ => true,
         };
+        if !moves && word.value.abs() <= 0.0 {
+            // Where the axis is not, it is at 0.
+            self.absent = true;
+            if self.absent_noted & bit(word.letter) == 0 {
+                self.absent_noted |= bit(word.letter);
+                remarks.push((word.span, Notice::AbsentAxis { letter }));
+            }
+            return Ok(());
+        }
         if !moves {
             return Err(Fault::new(word.span, self.no_axis(letter)));
         }

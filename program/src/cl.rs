@@ -2,10 +2,13 @@
 //!
 //! Source: ISO 4343 (APT) as CAM systems write it. The tool tip is in mm or inch by `UNITS`; `RAPID`
 //! holds for one move; `CIRCLE` names centre, axis and radius of the arc that the next `GOTO` ends,
-//! counter-clockwise about its axis. Not here: cycles and definitions of geometry, which are refused.
+//! counter-clockwise about its axis. Not here: systems and feedrates, see `cl_system`, and statements that are not
+//! read, see `cl_kinds`.
 
 use crate::cl_arc::Circle;
+use crate::cl_kinds::{Kind, kind};
 use crate::error::{Fault, Notice, ProgramError, Warning};
+use crate::frame::Frame;
 use crate::lines::{LONGEST_LINE, Lines};
 use crate::place::{Place, Span};
 use crate::program::MOST_WARNINGS;
@@ -20,41 +23,6 @@ use std::io::BufRead;
 use std::sync::Arc;
 use toolglide_kinematics::{PoseEnd, PoseFeed, PoseMove, Vector};
 
-/// Statements that say nothing about the motion.
-const SILENT: [&str; 28] = [
-    "AIR",
-    "CAMERA",
-    "CHECK",
-    "CLAMP",
-    "COOLNT",
-    "CUTTER",
-    "DISPLY",
-    "END-OF-PATH",
-    "HEAD",
-    "INTOL",
-    "MACHIN",
-    "MODE",
-    "MULTAX",
-    "OUTTOL",
-    "PAINT",
-    "PARTNO",
-    "PLUNGE",
-    "PPRINT",
-    "REMARK",
-    "SELCTL",
-    "SPINDL",
-    "SYN",
-    "TLAXIS",
-    "TOLER",
-    "TOOL PATH",
-    "TPRINT",
-    "VERIFY",
-    "ZSURF",
-];
-
-/// One minute, s.
-const MINUTE: f64 = 60.0;
-
 /// A cutter location file.
 #[derive(Debug)]
 pub(crate) struct CutterLocations<R> {
@@ -65,6 +33,14 @@ pub(crate) struct CutterLocations<R> {
     pub(crate) settings: Settings,
     pub(crate) units: Units,
     pub(crate) feedrate: Option<f64>,
+    /// Feedrate for each turn of the spindle, mm, where that is what was asked for.
+    pub(crate) per_turn: Option<f64>,
+    /// Speed of the spindle in turns a minute, where it is known.
+    pub(crate) spindle_speed: Option<f64>,
+    /// Where the points of the file are.
+    pub(crate) frame: Frame,
+    /// Kinds of statements of which was told that they move nothing.
+    told: BTreeSet<String>,
     pub(crate) rapid: bool,
     pub(crate) tip: Vector<3>,
     pub(crate) orientation: Vector<3>,
@@ -87,6 +63,10 @@ impl<R: BufRead> CutterLocations<R> {
             settings,
             units: Units::Millimeter,
             feedrate: None,
+            per_turn: None,
+            spindle_speed: None,
+            frame: Frame::NONE,
+            told: BTreeSet::new(),
             rapid: false,
             tip: settings.start,
             orientation: Vector::<3>::z(),
@@ -185,7 +165,7 @@ impl<R: BufRead> CutterLocations<R> {
                     }));
                 };
                 let step = Vector::<3>::new(x, y, z).map(|length| self.units.length(length));
-                let end = self.tip + step;
+                let end = self.tip + self.frame.direction(step);
                 self.check_reach(end, statement)?;
                 self.line(end, self.orientation, statement)?;
             }
@@ -200,16 +180,40 @@ impl<R: BufRead> CutterLocations<R> {
                 let end = PoseEnd::Dwell { duration: 0.0 };
                 self.push(end, PoseFeed::Rapid, self.settings.tolerance, statement)?;
             }
-            "LOADTL" | "LOAD" => self.load_tool(statement)?,
+            "MSYS" => self.system(statement)?,
+            "SPINDL" => self.spindle(statement)?,
+            "LOADTL" => self.load_tool(statement)?,
+            "LOAD" if statement.has("TOOL") => self.load_tool(statement)?,
             "END" | "FINI" => self.ended = true,
-            _ if SILENT.iter().any(|silent| name.starts_with(silent)) => {}
-            _ => {
-                let name = statement.name.as_str().into();
-                let fault = at(StatementError::NotSupported { name });
+            _ => self.pass(statement)?,
+        }
+        Ok(())
+    }
+
+    /// A statement that is not read.
+    fn pass(&mut self, statement: &Statement<'_>) -> Result<(), Fault> {
+        let name = statement.name.as_str();
+        let items: Vec<&str> = statement.items().map(|(item, _)| item).collect();
+        let refused = |reason: StatementError| Fault::new(statement.span, reason.into());
+        match kind(name, &items) {
+            Kind::Silent => {}
+            Kind::Told(what) => {
+                if self.told.insert(name.to_owned()) {
+                    let word = name.into();
+                    self.warn(statement.span, Notice::Noted { word, what });
+                }
+            }
+            Kind::Moving(what) => {
+                let name = name.into();
+                return Err(refused(StatementError::Moves { name, what }));
+            }
+            Kind::Unknown => {
+                let name = name.into();
+                let fault = refused(StatementError::NotSupported { name });
                 if !self.settings.lenient {
                     return Err(fault);
                 }
-                self.warn(fault);
+                self.warn(fault.span, Notice::Skipped(fault.reason));
             }
         }
         Ok(())
@@ -236,50 +240,13 @@ impl<R: BufRead> CutterLocations<R> {
         Ok(())
     }
 
-    fn warn(&mut self, fault: Fault) {
+    fn warn(&mut self, span: Span, notice: Notice) {
         if self.warnings.len() < MOST_WARNINGS {
-            let place = self.place(fault.span);
-            let notice = Notice::Skipped(fault.reason);
+            let place = self.place(span);
             self.warnings.push(Warning::new(place, notice, &self.text));
         } else {
             self.more_warnings += 1;
         }
-    }
-
-    fn feedrate(&mut self, statement: &Statement<'_>) -> Result<(), Fault> {
-        let (name, wanted) = ("FEDRAT", "a number, and MMPM, IPM or nothing");
-        let wrong = || {
-            Fault::new(
-                statement.span,
-                StatementError::WrongWord { name, wanted }.into(),
-            )
-        };
-        if statement.has("RAPID") {
-            self.rapid = true;
-            return Ok(());
-        }
-        let numbers = statement.numbers(true)?;
-        let (Some(&value), false) = (numbers.first(), numbers.len() > 1) else {
-            return Err(wrong());
-        };
-        let units = if statement.has("MMPM") {
-            Units::Millimeter
-        } else if statement.has("IPM") {
-            Units::Inch
-        } else if statement.has("MMPR") || statement.has("IPR") {
-            return Err(wrong());
-        } else {
-            self.units
-        };
-        if value <= 0.0 {
-            let quantity = "feedrate";
-            return Err(Fault::new(
-                statement.span,
-                Reason::NotPositive { quantity, value },
-            ));
-        }
-        self.feedrate = Some(units.length(value) / MINUTE);
-        Ok(())
     }
 
     fn place(&self, span: Span) -> Place {

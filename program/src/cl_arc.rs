@@ -1,8 +1,9 @@
 //! Arcs of cutter location files.
 //!
-//! Source: `CIRCLE/x,y,z,i,j,k,r` and the `GOTO` where the arc ends: counter-clockwise about its axis, as
+//! Source: `CIRCLE/x,y,z,i,j,k,r`, behind which NX writes four numbers more, and the `GOTO` where the arc ends: counter-clockwise about its axis, as
 //! chords within a share of the tolerance. Not here: other statements.
 
+use crate::arcs::allowed_mismatch;
 use crate::chords::count;
 use crate::cl::CutterLocations;
 use crate::error::Fault;
@@ -11,7 +12,7 @@ use crate::splines::CHORD_SHARE;
 use crate::statement::Statement;
 use crate::statement_error::StatementError;
 use std::io::BufRead;
-use toolglide_kinematics::numeric::{ARC_RADIUS_MISMATCH, ARC_RADIUS_MISMATCH_SHARE};
+use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{PoseEnd, Tolerance, ToolPose, Vector};
 
 /// The arc that the next GOTO ends.
@@ -25,18 +26,27 @@ pub(crate) struct Circle {
 impl<R: BufRead> CutterLocations<R> {
     pub(crate) fn circle(&self, statement: &Statement<'_>) -> Result<Circle, Fault> {
         let numbers = statement.numbers(true)?;
-        let [x, y, z, i, j, k, radius] = numbers[..] else {
-            let (name, given, wanted) = ("CIRCLE", numbers.len(), "7: centre, axis and radius");
+        let wrong = |given| {
+            let (name, wanted) = ("CIRCLE", "7 to 11: centre, axis, radius");
             let reason = StatementError::WrongCount {
                 name,
                 given,
                 wanted,
             };
-            return Err(Fault::new(statement.span, reason.into()));
+            Fault::new(statement.span, reason.into())
         };
+        let [x, y, z, i, j, k, radius, ref more @ ..] = numbers[..] else {
+            return Err(wrong(numbers.len()));
+        };
+        // NX writes tolerances and the size of the tool behind the radius.
+        if more.len() > 4 {
+            return Err(wrong(numbers.len()));
+        }
         let center = Vector::<3>::new(x, y, z).map(|length| self.units.length(length));
+        let center = self.frame.out(center);
         self.check_reach(center, statement)?;
-        let axis = ToolPose::new(center, Vector::<3>::new(i, j, k))
+        let axis = self.frame.direction(Vector::<3>::new(i, j, k));
+        let axis = ToolPose::new(center, axis)
             .map_err(|reason| Fault::new(statement.span, Reason::Path(reason)))?
             .orientation();
         let radius = self.units.length(radius);
@@ -63,7 +73,7 @@ impl<R: BufRead> CutterLocations<R> {
         let (start, before) = (self.tip, self.orientation);
         (self.tip, self.orientation) = (tip, orientation);
         let radius = circle.radius;
-        let allowed = ARC_RADIUS_MISMATCH.max(ARC_RADIUS_MISMATCH_SHARE * radius);
+        let allowed = allowed_mismatch(self.units, radius);
         let across = |point: Vector<3>| {
             let from = point - circle.center;
             from - circle.axis * from.dot(&circle.axis)
@@ -94,10 +104,17 @@ impl<R: BufRead> CutterLocations<R> {
             Tolerance::new(tolerance * (1.0 - CHORD_SHARE)).unwrap_or(self.settings.tolerance);
         let feed = self.feed(statement)?;
         let base = start - from;
+        let growth = if from.norm() > SHORTEST_LENGTH {
+            to.norm() / from.norm()
+        } else {
+            1.0
+        };
         for chord in 1..=chords {
             let share = f64::from(chord) / f64::from(chords);
             let (sine, cosine) = (share * sweep).sin_cos();
-            let out = from * cosine + circle.axis.cross(&from) * sine;
+            // Ends that were rounded are on circles of their own.
+            let size = 1.0 + share * (growth - 1.0);
+            let out = (from * cosine + circle.axis.cross(&from) * sine) * size;
             let point = if chord == chords {
                 tip
             } else {

@@ -21,7 +21,10 @@ impl<R: BufRead> CutterLocations<R> {
         let numbers = statement.numbers(false)?;
         let (tip, orientation) = match numbers[..] {
             [x, y, z] => ([x, y, z], self.orientation),
-            [x, y, z, i, j, k] => ([x, y, z], Vector::<3>::new(i, j, k)),
+            [x, y, z, i, j, k] => {
+                let way = Vector::<3>::new(i, j, k);
+                ([x, y, z], self.frame.direction(way))
+            }
             _ => {
                 let (given, wanted) = (numbers.len(), "3 or 6");
                 let reason = StatementError::WrongCount {
@@ -33,6 +36,7 @@ impl<R: BufRead> CutterLocations<R> {
             }
         };
         let tip = Vector::<3>::from(tip).map(|length| self.units.length(length));
+        let tip = self.frame.out(tip);
         self.check_reach(tip, statement)?;
         let pose = ToolPose::new(tip, orientation)
             .map_err(|reason| Fault::new(statement.span, Reason::Path(reason)))?;

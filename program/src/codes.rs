@@ -68,6 +68,21 @@ pub(crate) enum Distance {
     Incremental,
 }
 
+/// What a single word says about its number, whatever the distance mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// A place.
+    Absolute,
+    /// A step.
+    Incremental,
+    /// A place of a rotary axis, by the shortest way.
+    Shortest,
+    /// A place of a rotary axis, turning positively.
+    Positive,
+    /// A place of a rotary axis, turning negatively.
+    Negative,
+}
+
 /// What `F` means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FeedMode {

@@ -51,10 +51,8 @@ impl Lowering {
         if self.compensation.is_some() {
             return Err(refuse("while cutter compensation is on (G40 ends it)"));
         }
-        if block.first_of(b"@^").is_some() {
-            return Err(refuse("with polar coordinates"));
-        }
-        if block.first_of(&AXES).is_none() {
+        Self::no_others(block, "in a canned cycle")?;
+        if block.first_of(b"XYZ@^").is_none() {
             let reason = MachiningError::Companion {
                 code,
                 companion: "an axis word",
@@ -124,6 +122,9 @@ impl Lowering {
         sides: [usize; 2],
         center: &mut Vector<3>,
     ) -> Result<(), Fault> {
+        if block.first_of(b"@^").is_some() {
+            *center = self.polar(block, *center)?;
+        }
         for axis in sides {
             let letter = AXES[axis];
             if let Some(length) = self.length(block, letter)? {

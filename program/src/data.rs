@@ -59,6 +59,7 @@ impl Lowering {
                 self.parameters.put(place, length);
             }
         }
+        self.set_origins_of_others(block, number, false)?;
         self.take_again(number);
         Ok(())
     }
@@ -86,6 +87,7 @@ impl Lowering {
                 self.parameters.put(place, shift[axis]);
             }
         }
+        self.set_origins_of_others(block, number, true)?;
         self.take_again(number);
         Ok(())
     }

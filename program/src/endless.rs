@@ -10,6 +10,7 @@ use crate::flow_error::FlowError;
 use crate::lower::Lowering;
 use crate::modal::Modal;
 use crate::offsets::Offsets;
+use crate::others::Others;
 use crate::parameters::Parameters;
 use crate::settings::Settings;
 use crate::tools::ToolTable;
@@ -50,7 +51,7 @@ struct State {
     parameters: Parameters,
     program: Vector<3>,
     position: Vector<3>,
-    rotary: [f64; 3],
+    others: Others,
     modal: Modal,
     saved: Vec<Option<(Modal, bool)>>,
     offsets: Offsets,
@@ -85,12 +86,12 @@ impl Watch {
         Ok(())
     }
 
-    /// Takes note of the moves of a line, before which the machine stood at `start` and the rotary
-    /// axes at `turned`.
+    /// Takes note of the moves of a line, before which the machine stood at `start` and the
+    /// other axes at `others`.
     #[allow(clippy::float_cmp, reason = "the very same place, not one nearby")]
     pub(crate) fn note(
         &mut self,
-        (start, turned): (Vector<3>, [f64; 3]),
+        (start, others): (Vector<3>, Others),
         state: &Lowering,
         moves: &VecDeque<Move<3>>,
     ) {
@@ -99,7 +100,7 @@ impl Watch {
             Path::Dwell { duration } => *duration > 0.0,
             _ => true,
         };
-        if turned != state.rotary || moves.iter().any(moves_on) {
+        if others != state.others || moves.iter().any(moves_on) {
             self.still = 0;
         }
     }
@@ -166,7 +167,7 @@ impl State {
             parameters: state.parameters.clone(),
             program: state.program,
             position: state.position,
-            rotary: state.rotary,
+            others: state.others,
             modal: state.modal,
             saved: state.saved.clone(),
             offsets: state.offsets,
@@ -179,7 +180,7 @@ impl State {
     fn is(&self, state: &Lowering) -> bool {
         self.program == state.program
             && self.position == state.position
-            && self.rotary == state.rotary
+            && self.others == state.others
             && self.modal == state.modal
             && self.loaded == state.loaded
             && self.offsets == state.offsets

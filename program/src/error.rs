@@ -115,6 +115,33 @@ pub enum Notice {
         /// The tool.
         tool: u32,
     },
+    /// A word for an axis that the machine has not says that it is where it always is.
+    #[error("axis {letter} is not there, and its words that say 0 move nothing")]
+    AbsentAxis {
+        /// The letter.
+        letter: char,
+    },
+    /// An arc whose coordinates were rounded so that its ends are on two circles; said once.
+    #[error(
+        "the radii at start and end of this arc differ by {mismatch:.4} mm, as rounded coordinates make them; the centre of such arcs is moved"
+    )]
+    RoundedArc {
+        /// By how much they differ, mm.
+        mismatch: f64,
+    },
+    /// A feedrate from before `G93` is used behind `G94`.
+    #[error(
+        "the feedrate of {feedrate} mm/min from before G93 holds again; LinuxCNC wants it written anew"
+    )]
+    OldFeedrate {
+        /// The feedrate, mm/min.
+        feedrate: f64,
+    },
+    /// `G64 P0`.
+    #[error(
+        "P0 leaves no room at corners, so that every move ends in rest, as with G61; LinuxCNC reads it as no bound at all: write G64 alone for that"
+    )]
+    NoTolerance,
     /// `F` stands in the block that changes the units, and is read in those before it.
     #[error(
         "F is read in {former} a minute, because it takes effect before the units of its block"

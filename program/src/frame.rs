@@ -23,6 +23,26 @@ impl Frame {
         shift: [0.0; 3],
     };
 
+    /// A frame by its origin, and by its X and Y axes, which are upright to each other within rounding.
+    pub(crate) fn of(origin: Vector<3>, along: Vector<3>, across: Vector<3>) -> Self {
+        let first = along / along.norm();
+        let second = across - first * first.dot(&across);
+        let second = second / second.norm();
+        Self {
+            axes: [first.into(), second.into(), first.cross(&second).into()],
+            scale: [1.0; 3],
+            shift: origin.into(),
+        }
+    }
+
+    /// A direction of the program in the workpiece.
+    pub(crate) fn direction(&self, way: Vector<3>) -> Vector<3> {
+        Vector::from_fn(|row, _| {
+            let scaled = |axis: usize| self.scale[axis] * way[axis];
+            (0..3).map(|axis| self.axes[axis][row] * scaled(axis)).sum()
+        })
+    }
+
     /// A point of the program in the workpiece.
     pub(crate) fn out(&self, point: Vector<3>) -> Vector<3> {
         Vector::from_fn(|row, _| {

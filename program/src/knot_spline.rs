@@ -2,7 +2,7 @@
 //!
 //! Source: NURBS interpolation of FANUC and Mitsubishi controls: `G6.2 P K X Y Z R`, then a block for each
 //! control point with its knot `K` and its weight `R`, then as many blocks with a knot alone as the order
-//! `P` says. With the last knot the curve is complete, and becomes chords as all splines do. Not here: the
+//! `P` says. LinuxCNC writes `G6.2` in these again, and says by `Q` how it steps along the curve. With the last knot the curve is complete, and becomes chords as all splines do. Not here: the
 //! chords.
 
 use crate::bezier::{MOST_HALVINGS, Weighted, beziers, flatten};
@@ -20,6 +20,9 @@ use toolglide_kinematics::{Move, Vector};
 
 /// Order where none is written.
 const USUAL_ORDER: u32 = 4;
+
+/// How many ways of stepping along a spline LinuxCNC has.
+const STEPPINGS: u32 = 3;
 
 /// How far the first point may be from where the tool is, mm: what two numbers with four decimals of an
 /// inch may differ by.
@@ -129,6 +132,10 @@ impl Lowering {
         if block.has(b'P') {
             return Err(at(b'P', MachiningError::NoKnotOrder));
         }
+        if block.has(b'Q') {
+            let reason = Reason::Unused { letter: 'Q' };
+            return Err(Fault::new(block.span(b'Q'), reason));
+        }
         let Some(knot) = block.get(b'K') else {
             return Err(here(MachiningError::NoKnot));
         };
@@ -164,6 +171,14 @@ impl Lowering {
             return Err(Fault::new(motion_span(block), reason.into()));
         }
         let order = whole(block, b'P', "order of the spline", 2, LARGEST_ORDER)?;
+        // How LinuxCNC steps along the curve, whose shape it leaves alone.
+        whole(
+            block,
+            b'Q',
+            "way of stepping along the spline",
+            1,
+            STEPPINGS,
+        )?;
         let distance = (end - self.program).norm();
         if distance > START_SLACK {
             let allowed = START_SLACK;

@@ -35,6 +35,8 @@ pub(crate) struct Lexer<'a> {
     assignments: &'a mut Vec<Assignment>,
     /// Whether a value was more than a number.
     pub(crate) computed: bool,
+    /// Whether an E right behind a number is a word of its own, as printers write it.
+    pub(crate) extrudes: bool,
 }
 
 impl<'a> Lexer<'a> {
@@ -50,6 +52,7 @@ impl<'a> Lexer<'a> {
             values,
             assignments,
             computed: false,
+            extrudes: false,
         }
     }
 
@@ -85,9 +88,13 @@ impl<'a> Lexer<'a> {
         let value = match number(self.line, self.at) {
             Ok((value, end)) => {
                 self.at = end;
+                let letter = char::from(letter);
+                // Behind the number of a code a word may follow without a blank.
+                if !matches!(letter, 'G' | 'M' | 'N' | 'T') {
+                    self.refuse_exponent(start, letter)?;
+                }
                 if !value.is_finite() {
                     let span = Span::new(start, end);
-                    let letter = char::from(letter);
                     return Err(Fault::new(span, Reason::NumberOutOfRange { letter }));
                 }
                 value
@@ -99,6 +106,27 @@ impl<'a> Lexer<'a> {
             value,
             span: Span::new(start, self.at),
         })
+    }
+
+    /// Refuses a number that goes on as `e-12` does, which RS274/NGC would read as a word E.
+    fn refuse_exponent(&self, start: usize, letter: char) -> Result<(), Fault> {
+        let rest = self.line.get(self.at..).unwrap_or_default();
+        if self.extrudes || !matches!(rest.first(), Some(b'e' | b'E')) {
+            return Ok(());
+        }
+        let signed = usize::from(matches!(rest.get(1), Some(b'+' | b'-')));
+        let digits = rest[1 + signed..]
+            .iter()
+            .take_while(|byte| byte.is_ascii_digit())
+            .count();
+        if digits == 0 {
+            return Ok(());
+        }
+        let end = self.at + 1 + signed + digits;
+        Err(Fault::new(
+            Span::new(start, end),
+            Reason::Exponent { letter },
+        ))
     }
 
     /// What stands in place of a number; `met` is where the search for digits ended.
@@ -132,6 +160,7 @@ impl<'a> Lexer<'a> {
         evaluator.at += 1;
         let value = evaluator.value()?;
         self.at = evaluator.at;
+        self.refuse_exponent(start, '#')?;
         self.assignments.push(Assignment {
             parameter,
             value,

@@ -15,12 +15,15 @@ use crate::lexer::Assignment;
 use crate::machining_error::MachiningError;
 use crate::modal::Modal;
 use crate::offsets::Offsets;
+use crate::others::Others;
 use crate::parameters::Parameters;
 use crate::place::Span;
+use crate::printer::Printer;
 use crate::reason::Reason;
 use crate::settings::Settings;
 use crate::splines::Nurbs;
 use crate::tools::ToolTable;
+use crate::units::per_minute;
 use crate::uses::{check, motion_of, motion_span};
 use std::collections::{BTreeSet, VecDeque};
 use toolglide_kinematics::{Arc, Feedrate, Move, Vector};
@@ -49,8 +52,8 @@ pub(crate) struct Lowering {
     pub(crate) program: Vector<3>,
     /// Where that is on the machine, mm.
     pub(crate) position: Vector<3>,
-    /// Rotary axes A, B and C, degrees.
-    pub(crate) rotary: [f64; 3],
+    /// Axes A, B, C, U, V and W.
+    pub(crate) others: Others,
     /// Whether the axis words are those of the tool tip.
     pub(crate) tip: bool,
     pub(crate) compensation: Option<Compensation>,
@@ -74,8 +77,11 @@ pub(crate) struct Lowering {
     /// Whether this block named its end so that it does not matter where the tool was.
     pub(crate) arrived: bool,
     pub(crate) tools_used: BTreeSet<u32>,
-    /// Whether it was said that words of an extruder are skipped.
-    extruder_noted: bool,
+    /// What is to be told of the block, and whether it was told of a rounded arc.
+    pub(crate) own_remark: Option<Remark>,
+    pub(crate) rounding_told: bool,
+    /// Extrusion, for programs of printers.
+    pub(crate) printer: Option<Printer>,
 }
 
 impl Lowering {
@@ -89,7 +95,7 @@ impl Lowering {
             loaded: 0,
             program: settings.start,
             position: settings.start,
-            rotary: [0.0; 3],
+            others: Others::default(),
             tip: false,
             compensation: None,
             leads_to_normal: false,
@@ -104,7 +110,9 @@ impl Lowering {
             line: 0,
             arrived: false,
             tools_used: BTreeSet::new(),
-            extruder_noted: false,
+            own_remark: None,
+            rounding_told: false,
+            printer: None,
         }
     }
 
@@ -151,17 +159,15 @@ impl Lowering {
     ) -> Result<bool, Fault> {
         self.line = line;
         let motion = motion_of(block, self.modal.motion)?;
-        check(
-            block,
-            motion,
-            &self.settings,
-            &mut self.extruder_noted,
-            remarks,
-        )?;
+        check(block, motion, &self.settings, remarks)?;
         self.check_open_spline(block, motion)?;
         self.check_compensated(block)?;
         let former = self.modal.motion;
         self.modal.take(block, &self.settings, remarks)?;
+        if self.modal.feedrate_is_old {
+            self.tell_old_feedrate(block, motion, remarks);
+        }
+        let before = self.position;
         if block.has(b'T') && self.tools_used.len() < MOST_TOOLS {
             self.tools_used.insert(self.modal.tool);
         }
@@ -172,6 +178,9 @@ impl Lowering {
             // Most blocks of long programs are motion alone.
             if let Some(motion) = motion {
                 self.motion(block, motion, former, moves)?;
+            }
+            if self.printer.is_some() {
+                self.extrude(block, motion, before, moves)?;
             }
             return Ok(false);
         }
@@ -190,6 +199,9 @@ impl Lowering {
         }
         if let Some(motion) = motion {
             self.motion(block, motion, former, moves)?;
+        }
+        if self.printer.is_some() {
+            self.extrude(block, motion, before, moves)?;
         }
         if let Some(saving) = block.saving {
             self.save(saving, block)?;
@@ -215,6 +227,24 @@ impl Lowering {
         }
         self.check_no_spline()
             .map_err(|reason| Fault::new(Span::default(), reason.into()))
+    }
+
+    /// Tells of a feedrate that nobody wrote since inverse time ended, once it is used.
+    fn tell_old_feedrate(
+        &mut self,
+        block: &Block,
+        motion: Option<Motion>,
+        remarks: &mut Vec<Remark>,
+    ) {
+        let Some(feedrate) = self.modal.feedrate else {
+            return;
+        };
+        if motion.is_some_and(|motion| motion != Motion::Rapid) {
+            self.modal.feedrate_is_old = false;
+            let feedrate = per_minute(feedrate);
+            let notice = Notice::OldFeedrate { feedrate };
+            remarks.push((motion_span(block), notice));
+        }
     }
 
     fn motion(
@@ -260,11 +290,12 @@ impl Lowering {
         // Even where the move itself is refused, the next one starts at its end.
         (self.program, self.position) = (end, there);
         let step = if motion.is_arc() {
-            let arc = arc(block, self, motion, start, there)?;
+            let (arc, mismatch) = arc(block, self, motion, start, there)?;
+            self.tell_rounding(block, mismatch);
             Move::arc(arc, self.feedrate(block, arc.length())?, tolerance)
         } else {
             let feedrate = match motion {
-                Motion::Rapid => Feedrate::RAPID,
+                Motion::Rapid if !self.paces_rapids() => Feedrate::RAPID,
                 _ => self.feedrate(block, (there - start).norm())?,
             };
             Move::line_to(there, feedrate, tolerance)

@@ -179,6 +179,12 @@ pub enum MachiningError {
         /// Largest distance, mm.
         allowed: f64,
     },
+    /// A place of a rotary axis that goes there a certain way.
+    #[error("a place by DC( ), ACP( ) or ACN( ) is {value} degrees, but must be from 0 to 360")]
+    OutsideTurn {
+        /// The place, degrees.
+        value: f64,
+    },
     /// The modal state cannot be restored.
     #[error("there is no saved state to restore")]
     NothingSaved,

@@ -25,6 +25,8 @@ pub(crate) struct Modal {
     pub(crate) feed_mode: FeedMode,
     /// Feedrate of the mode per minute, mm/s; none before the first.
     pub(crate) feedrate: Option<f64>,
+    /// Whether that is one from before inverse time, which nobody has used or written again.
+    pub(crate) feedrate_is_old: bool,
     pub(crate) path_control: PathControl,
     pub(crate) tolerance: Tolerance,
     pub(crate) spindle_speed: f64,
@@ -44,6 +46,7 @@ impl Modal {
             arc_distance: Distance::Incremental,
             feed_mode: FeedMode::PerMinute,
             feedrate: None,
+            feedrate_is_old: false,
             path_control: PathControl::Blend,
             tolerance: settings.tolerance,
             spindle_speed: 0.0,
@@ -62,15 +65,15 @@ impl Modal {
         if let Some(mode) = block.feed_mode
             && mode != self.feed_mode
         {
-            // The number means something else from here, so it must be written again.
+            // Rates of inverse time leave the feedrate per minute alone.
             self.feed_mode = mode;
-            self.feedrate = None;
+            self.feedrate_is_old = mode == FeedMode::PerMinute && self.feedrate.is_some();
         }
         self.take_feedrate(block, remarks)?;
         self.take_speed_and_tool(block)?;
         self.plane = block.plane.unwrap_or(self.plane);
         self.units = block.units.unwrap_or(self.units);
-        self.take_path_control(block, settings)?;
+        self.take_path_control(block, settings, remarks)?;
         self.distance = block.distance.unwrap_or(self.distance);
         self.arc_distance = block.arc_distance.unwrap_or(self.arc_distance);
         self.return_to_start = block.return_to_start.unwrap_or(self.return_to_start);
@@ -84,6 +87,7 @@ impl Modal {
         };
         if self.feed_mode == FeedMode::PerMinute {
             self.feedrate = Some(self.units.feedrate(value));
+            self.feedrate_is_old = false;
             if block.units.is_some_and(|units| units != self.units) {
                 let former = self.units.name();
                 remarks.push((block.span(b'F'), Notice::FeedBeforeUnits { former }));
@@ -102,7 +106,12 @@ impl Modal {
         Ok(())
     }
 
-    fn take_path_control(&mut self, block: &Block, settings: &Settings) -> Result<(), Fault> {
+    fn take_path_control(
+        &mut self,
+        block: &Block,
+        settings: &Settings,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<(), Fault> {
         let Some(control) = block.path_control else {
             return Ok(());
         };
@@ -117,6 +126,11 @@ impl Modal {
         {
             let at = |reason| Fault::new(block.span(b'P'), reason);
             let length = self.units.bounded_length('P', value).map_err(at)?;
+            if length <= 0.0 {
+                self.path_control = PathControl::ExactStop;
+                remarks.push((block.span(b'P'), Notice::NoTolerance));
+                return Ok(());
+            }
             let quantity = "tolerance";
             self.tolerance = Tolerance::new(length).map_err(|reason| match reason {
                 ToolpathError::TooSmall { .. } | ToolpathError::TooLarge { .. } => {

@@ -12,8 +12,8 @@ use toolglide_kinematics::Vector;
 pub(crate) const SYSTEMS: u8 = 9;
 
 /// Parameter that is 1 while `G92` holds, and the first one of its offsets.
-const SHIFTED: u32 = 5210;
-const SHIFT: u32 = 5211;
+pub(crate) const SHIFTED: u32 = 5210;
+pub(crate) const SHIFT: u32 = 5211;
 
 /// First parameter of the origin of a coordinate system from 1, and how much further the next is.
 const ORIGIN: u32 = 5201;

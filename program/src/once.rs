@@ -10,6 +10,7 @@ use crate::error::{Fault, Remark};
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
 use crate::offsets::axis_number;
+use crate::others::OTHERS;
 use crate::parameters::SYSTEM;
 use crate::place::Span;
 use crate::reason::Reason;
@@ -62,6 +63,7 @@ impl Lowering {
         {
             self.parameters.put(SYSTEM, f64::from(number));
             self.offsets.take_system(number, &self.parameters);
+            self.place_others();
             self.program = self.offsets.in_program(self.position);
         }
         Ok(())
@@ -85,10 +87,11 @@ impl Lowering {
                 for (axis, number) in (u32::from(first)..).take(3).enumerate() {
                     self.parameters.put(number, self.position[axis]);
                 }
+                self.store_others(first);
             }
             Once::Shift | Once::LocalShift => {
                 let mut shift = self.offsets.shift();
-                let mut any = block.has(b'E');
+                let mut any = block.has(b'E') || block.absent;
                 for (axis, letter) in AXES.into_iter().enumerate() {
                     if let Some(length) = self.length(block, letter)? {
                         shift[axis] = match once {
@@ -98,15 +101,25 @@ impl Lowering {
                         any = true;
                     }
                 }
+                any |= self.shift_others(block, once)?;
+                if !any && self.printer.is_some() {
+                    // Every axis is at 0 from here.
+                    shift += self.program;
+                    any = true;
+                }
                 if !any {
                     return Err(companion(block, Group::NonModal, "an axis word"));
                 }
                 self.offsets.set_shift(shift, &mut self.parameters);
             }
-            Once::ClearShift => self.offsets.end_shift(true, &mut self.parameters),
+            Once::ClearShift => {
+                self.offsets.end_shift(true, &mut self.parameters);
+                self.clear_others();
+            }
             Once::SuspendShift => self.offsets.end_shift(false, &mut self.parameters),
             Once::RestoreShift => self.offsets.restore_shift(&mut self.parameters),
         }
+        self.place_others();
         self.program = self.offsets.in_program(self.position);
         Ok(())
     }
@@ -143,10 +156,16 @@ impl Lowering {
             }
         }
         let home = self.offsets.in_program(home);
-        if block.first_of(&AXES).is_none() {
-            return self.go(home, Feedrate::RAPID, span, moves);
+        if block.first_of(&AXES).is_none() && block.absent {
+            return Ok(());
         }
-        let mut end = self.end(block)?;
+        self.home_others(block, first)?;
+        if block.first_of(&AXES).is_none() {
+            let stays = block.first_of(&OTHERS).is_some();
+            let end = if stays { self.program } else { home };
+            return self.go(end, Feedrate::RAPID, span, moves);
+        }
+        let mut end = self.straight_end(block)?;
         self.go(end, Feedrate::RAPID, span, moves)?;
         // The axes that are named are those of the program, which may be turned.
         for (axis, letter) in AXES.into_iter().enumerate() {

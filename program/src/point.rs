@@ -4,51 +4,46 @@
 //! where the point is on the machine.
 
 use crate::block::{AXES, Block};
-use crate::code::Code;
 use crate::codes::{Distance, Group, Once, Plane};
 use crate::error::Fault;
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
+use crate::others::LARGEST_ANGLE;
 use crate::units::within_reach;
 use toolglide_kinematics::Vector;
-
-/// Letters of the rotary axes.
-pub(crate) const ROTARY: [u8; 3] = *b"ABC";
-
-/// Largest angle of a rotary axis or of polar coordinates, degrees: as far beyond use as it is far
-/// within what a float of 64 bits resolves.
-const LARGEST_ANGLE: f64 = 1e9;
 
 impl Lowering {
     /// Where the axis words of a block lead.
     pub(crate) fn end(&mut self, block: &Block) -> Result<Vector<3>, Fault> {
         if block.once == Some(Once::MachineCoordinates) {
-            if block.rotary {
-                self.turn(block)?;
-            }
+            self.turn(block)?;
             return self.end_on_machine(block);
         }
+        let end = self.straight_end(block)?;
+        self.turn(block)?;
+        let named = block.has(b'X') && block.has(b'Y') || block.has(b'@') && block.has(b'^');
+        self.arrived = named && self.modal.distance == Distance::Absolute;
+        Ok(end)
+    }
+
+    /// Where the words X, Y and Z of a block lead.
+    pub(crate) fn straight_end(&self, block: &Block) -> Result<Vector<3>, Fault> {
         let mut end = self.program;
         if block.first_of(b"@^").is_some() {
-            end = self.polar(block)?;
+            end = self.polar(block, self.program)?;
         }
         for (axis, letter) in AXES.into_iter().enumerate() {
             let Some(value) = block.get(letter) else {
                 continue;
             };
             let length = self.modal.units.length(value);
-            let coordinate = match self.modal.distance {
+            let coordinate = match block.distance_of(letter, self.modal.distance) {
                 Distance::Absolute => length,
                 Distance::Incremental => self.program[axis] + length,
             };
             end[axis] = within_reach(char::from(letter), coordinate)
                 .map_err(|reason| Fault::new(block.span(letter), reason))?;
         }
-        if block.rotary {
-            self.turn(block)?;
-        }
-        let named = block.has(b'X') && block.has(b'Y') || block.has(b'@') && block.has(b'^');
-        self.arrived = named && self.modal.distance == Distance::Absolute;
         Ok(end)
     }
 
@@ -57,18 +52,20 @@ impl Lowering {
         let mut there = self.position;
         for (axis, letter) in AXES.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
-                there[axis] = self
-                    .modal
-                    .units
-                    .bounded_length(char::from(letter), value)
+                let base = match block.distance_of(letter, Distance::Absolute) {
+                    Distance::Absolute => 0.0,
+                    Distance::Incremental => there[axis],
+                };
+                let length = base + self.modal.units.length(value);
+                there[axis] = within_reach(char::from(letter), length)
                     .map_err(|reason| Fault::new(block.span(letter), reason))?;
             }
         }
         Ok(self.offsets.in_program(there))
     }
 
-    /// Distance and angle from the origin, degrees; with `G91` both are added to what they are.
-    fn polar(&self, block: &Block) -> Result<Vector<3>, Fault> {
+    /// Distance and angle from the origin, degrees; with `G91` both are added to those of `from`.
+    pub(crate) fn polar(&self, block: &Block, from: Vector<3>) -> Result<Vector<3>, Fault> {
         let letter = if block.has(b'@') { b'@' } else { b'^' };
         let refuse = |what| {
             let letter = char::from(letter);
@@ -84,11 +81,14 @@ impl Lowering {
         if block.first_of(b"XY").is_some() {
             return Err(refuse("to stand without X and Y"));
         }
-        let here = [self.program[0], self.program[1]];
+        let here = [from[0], from[1]];
         let mut distance = here[0].hypot(here[1]);
         let mut angle = here[1].atan2(here[0]).to_degrees();
-        let incremental = self.modal.distance == Distance::Incremental;
-        if distance == 0.0 && incremental {
+        let steps = |letter| {
+            let mode = block.distance_of(letter, self.modal.distance);
+            mode == Distance::Incremental
+        };
+        if distance == 0.0 && (block.has(b'^') && steps(b'^') || block.has(b'@') && steps(b'@')) {
             return Err(refuse("G90 at the origin, which has no angle"));
         }
         if distance == 0.0 && !(block.has(b'@') && block.has(b'^')) {
@@ -96,7 +96,7 @@ impl Lowering {
         }
         if let Some(value) = block.get(b'@') {
             let length = self.modal.units.length(value);
-            let sum = if incremental {
+            let sum = if steps(b'@') {
                 distance + length
             } else {
                 length
@@ -105,41 +105,15 @@ impl Lowering {
                 within_reach('@', sum).map_err(|reason| Fault::new(block.span(b'@'), reason))?;
         }
         if let Some(value) = block.get(b'^') {
-            angle = if incremental { angle + value } else { value };
+            angle = if steps(b'^') { angle + value } else { value };
             if angle.abs() > LARGEST_ANGLE {
                 return Err(refuse("an angle up to 1e9 degrees"));
             }
         }
         let (sine, cosine) = angle.to_radians().sin_cos();
-        let mut end = self.program;
+        let mut end = from;
         (end[0], end[1]) = (distance * cosine, distance * sine);
         Ok(end)
-    }
-
-    /// Takes the words of rotary axes, degrees.
-    fn turn(&mut self, block: &Block) -> Result<(), Fault> {
-        for (axis, letter) in ROTARY.into_iter().enumerate() {
-            if let Some(value) = block.get(letter) {
-                let angle = match self.modal.distance {
-                    Distance::Absolute => value,
-                    Distance::Incremental => self.rotary[axis] + value,
-                };
-                if self.compensation.is_some() {
-                    let code = Code::letter(letter);
-                    let state = "while cutter compensation is on (G40 ends it)";
-                    let reason = MachiningError::NotNow { code, state };
-                    return Err(Fault::new(block.span(letter), reason.into()));
-                }
-                if angle.abs() > LARGEST_ANGLE {
-                    let letter = char::from(letter);
-                    let what = "an angle up to 1e9 degrees";
-                    let reason = MachiningError::Polar { letter, what };
-                    return Err(Fault::new(block.span(ROTARY[axis]), reason.into()));
-                }
-                self.rotary[axis] = angle;
-            }
-        }
-        Ok(())
     }
 
     /// A length word in mm, if it stands in the block.

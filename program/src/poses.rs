@@ -2,6 +2,7 @@
 //!
 //! Not here: the languages, and what a pose means on a machine.
 
+use crate::arithmetic_error::ArithmeticError;
 use crate::axis_words::AxisWords;
 use crate::cl::CutterLocations;
 use crate::code::Code;
@@ -48,7 +49,11 @@ impl<R: BufRead> Poses<R> {
             Language::CutterLocations => {
                 Source::Locations(Box::new(CutterLocations::new(reader, file, settings)))
             }
-            Language::Sinumerik | Language::Fanuc | Language::Ngc => {
+            Language::Sinumerik
+            | Language::Fanuc
+            | Language::Ngc
+            | Language::Printer
+            | Language::NotRead(_) => {
                 let program = Program::new(reader, file, settings).in_language(language);
                 Source::Axes(Box::new(AxisWords::new(program)))
             }
@@ -85,6 +90,18 @@ impl<R: BufRead> Poses<R> {
             axes.program.set_reference_points(points);
         }
         self
+    }
+
+    /// The same program, with the value of a parameter, as [`Program::with_parameter`]; cutter location
+    /// files have none.
+    ///
+    /// # Errors
+    /// Those of [`Program::with_parameter`].
+    pub fn with_parameter(mut self, name: &str, value: f64) -> Result<Self, ArithmeticError> {
+        if let Source::Axes(axes) = &mut self.source {
+            axes.program.give_parameter(name, value)?;
+        }
+        Ok(self)
     }
 
     /// The same program, for a machine of this name, as [`Program::for_machine`].

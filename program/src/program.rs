@@ -54,6 +54,8 @@ pub struct Program<R> {
     repeated_refusals: u32,
     pub(crate) sinumerik: Option<Sinumerik>,
     pub(crate) fanuc: Option<Box<Fanuc>>,
+    /// The language of the program, if it is one that is not read.
+    pub(crate) not_read: Option<&'static str>,
 }
 
 impl<R: BufRead> Program<R> {
@@ -75,6 +77,7 @@ impl<R: BufRead> Program<R> {
             repeated_refusals: 0,
             sinumerik: None,
             fanuc: None,
+            not_read: None,
         }
     }
 
@@ -110,6 +113,11 @@ impl<R: BufRead> Program<R> {
             self.past_refusals = false;
             return Err(Fault::new(Span::default(), endless.into()));
         }
+        if let Some(language) = self.not_read {
+            self.past_refusals = false;
+            let span = Span::new(0, self.flow.text().len());
+            return Err(Fault::new(span, Reason::LanguageNotRead { language }));
+        }
         if let Some(sinumerik) = &mut self.sinumerik {
             let text = self.flow.text();
             let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'));
@@ -125,6 +133,13 @@ impl<R: BufRead> Program<R> {
             let (block, state) = (&mut self.block, &mut self.lowering);
             sinumerik.read(reader, block, state, &mut self.remarks)?;
             return self.carry_out();
+        }
+        let mut end = self.flow.text().len();
+        if self.lowering.printer.is_some() {
+            let Some(words) = self.printer_line()? else {
+                return Ok(());
+            };
+            end = words.min(end);
         }
         let text = self.flow.text();
         let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'));
@@ -143,7 +158,7 @@ impl<R: BufRead> Program<R> {
             Some(_) => {}
         }
         self.lowering.line = self.flow.line();
-        let text = self.flow.text();
+        let text = &self.flow.text()[..end];
         self.block.read(
             text,
             &self.lowering,
@@ -164,9 +179,11 @@ impl<R: BufRead> Program<R> {
         if !self.block.assignments.is_empty() {
             self.lowering.assign(&mut self.block.assignments)?;
         }
-        self.ended =
-            self.lowering
-                .block(&self.block, line, &mut self.waiting, &mut self.remarks)?;
+        let outcome = self
+            .lowering
+            .block(&self.block, line, &mut self.waiting, &mut self.remarks);
+        self.remarks.extend(self.lowering.own_remark.take());
+        self.ended = outcome?;
         if self.ended {
             self.lowering.finish(&mut self.waiting)?;
         }
@@ -249,7 +266,7 @@ impl<R: BufRead> Program<R> {
     pub(crate) fn read_line(&mut self) -> Result<(), ProgramError> {
         let lost = self.aftermath.place;
         self.lowering.arrived = false;
-        let before = (self.lowering.position, self.lowering.rotary);
+        let before = (self.lowering.position, self.lowering.others);
         let outcome = self.line();
         let watch = &mut self.flow.watch;
         watch.note(before, &self.lowering, &self.waiting);

@@ -2,9 +2,11 @@
 //!
 //! Not here: reading.
 
+use crate::arithmetic_error::ArithmeticError;
 use crate::codes::Motion;
 use crate::fanuc::Fanuc;
 use crate::language::Language;
+use crate::printer::Printer;
 use crate::program::Program;
 use crate::sinumerik::Sinumerik;
 use crate::tape::Tape;
@@ -54,12 +56,52 @@ impl<R: BufRead> Program<R> {
         self
     }
 
-    /// The same program, in a language of axis words: RS274/NGC, as without this, Sinumerik, or FANUC.
+    /// The same program, with the value of a parameter that only the machine or the operator knows, before
+    /// its first line: a number with or without `#`, or a name with or without `#<` and `>`.
+    ///
+    /// # Errors
+    /// [`ArithmeticError::BadName`] for what is no name, [`ArithmeticError::NoSuchParameter`],
+    /// [`ArithmeticError::ReadOnly`] and [`ArithmeticError::Predefined`] for what cannot be set, and
+    /// [`ArithmeticError::Overflow`] for a value that is not finite.
+    ///
+    /// # Examples
+    /// ```
+    /// use toolglide_kinematics::Tolerance;
+    /// use toolglide_program::{Program, Settings};
+    /// let text = "F#<_hal[cut.feed]>\nG1 X#31\n";
+    /// let program = Program::new(text.as_bytes(), "a.ngc", Settings::new(Tolerance::new(0.01)?))
+    ///     .with_parameter("_hal[cut.feed]", 1200.0)?
+    ///     .with_parameter("#31", 7.0)?;
+    /// let moves = program.collect::<Result<Vec<_>, _>>()?;
+    /// assert_eq!(moves[0].feedrate().speed(), 20.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_parameter(mut self, name: &str, value: f64) -> Result<Self, ArithmeticError> {
+        self.give_parameter(name, value)?;
+        Ok(self)
+    }
+
+    pub(crate) fn give_parameter(&mut self, name: &str, value: f64) -> Result<(), ArithmeticError> {
+        if !value.is_finite() {
+            let function = "a given parameter";
+            return Err(ArithmeticError::Overflow { function });
+        }
+        self.lowering.give_parameter(name, value)
+    }
+
+    /// The same program, in a language of axis words: RS274/NGC, as without this, that of printers, FANUC, or Sinumerik.
+    /// One that is [not read](Language::NotRead) is refused in its first line.
     #[must_use]
     pub fn in_language(mut self, language: Language) -> Self {
         let jumps = language == Language::Sinumerik;
         let fanuc = language == Language::Fanuc;
         self.sinumerik = jumps.then(Sinumerik::default);
+        self.block.printer = language == Language::Printer;
+        self.lowering.printer = self.block.printer.then(Printer::default);
+        self.not_read = match language {
+            Language::NotRead(name) => Some(name),
+            _ => None,
+        };
         self.lowering.leads_to_normal = jumps || fanuc;
         self.flow.tape = (jumps || fanuc).then(|| Tape::new(&self.flow.file));
         self.fanuc = fanuc.then(|| Box::new(Fanuc::new()));

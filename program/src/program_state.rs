@@ -80,6 +80,14 @@ impl<R: BufRead> Program<R> {
     /// Where the rotary axes A, B and C are, degrees.
     #[must_use]
     pub fn rotary(&self) -> [f64; 3] {
-        self.lowering.rotary
+        let [a, b, c, ..] = self.lowering.others.at;
+        [a, b, c]
+    }
+
+    /// Where the straight axes U, V and W are, mm.
+    #[must_use]
+    pub fn secondary(&self) -> [f64; 3] {
+        let [.., u, v, w] = self.lowering.others.at;
+        [u, v, w]
     }
 }

@@ -31,6 +31,12 @@ pub enum Reason {
         /// Largest length of a line, bytes.
         bound: usize,
     },
+    /// A whole file in a language that is known, and not read.
+    #[error("this is {language}, which is not read")]
+    LanguageNotRead {
+        /// The language.
+        language: &'static str,
+    },
     /// A control byte: this is not a text.
     #[error("byte 0x{byte:02x} does not belong into a text; is this a binary file?")]
     ControlByte {
@@ -68,6 +74,14 @@ pub enum Reason {
     #[error("a number out of range after {letter}: the largest is about 1.8e308")]
     NumberOutOfRange {
         /// The letter before it.
+        letter: char,
+    },
+    /// A number with an exponent, which would be taken for a word E.
+    #[error(
+        "the number after {letter} has an exponent, which numbers here have not; write its decimals, and a blank before a word E"
+    )]
+    Exponent {
+        /// The letter before it; `#` for a parameter.
         letter: char,
     },
     /// A part of the language that is not read.

@@ -5,10 +5,11 @@
 //! here: jumps, conditions and loops, see `sinumerik_flow`, and cycles, which are refused by name.
 
 use crate::block::Block;
-use crate::codes::{Distance, PathControl};
+use crate::codes::{PathControl, Way};
 use crate::error::{Fault, Notice, Remark};
 use crate::lexer::Word;
 use crate::lower::Lowering;
+use crate::machining_error::MachiningError;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
@@ -19,6 +20,9 @@ use crate::sinumerik_words::{Known, known};
 use crate::tools::ToolTable;
 use std::collections::BTreeMap;
 use toolglide_kinematics::{Tolerance, ToolpathError};
+
+/// Largest place of a rotary axis that goes there a certain way, degrees.
+const WHOLE_TURN: f64 = 360.0;
 
 /// Tools whose names are remembered.
 const MOST_TOOLS: usize = 1000;
@@ -98,7 +102,10 @@ impl Sinumerik {
         let quoted = reader.quoted_after_equals();
         let value = match quoted {
             Some(name) => f64::from(self.number_of(name, &line.state.tools)),
-            None => reader.address_value(line.state, start)?.0,
+            None => match reader.address_value(line.state, start)? {
+                (value, None) => value,
+                (_, Some(_)) => return Err(no_way("T", Span::new(start, reader.at))),
+            },
         };
         line.add(b'T', value, Span::new(start, reader.at))
     }
@@ -133,8 +140,16 @@ impl Line<'_> {
                 self.add(letter, value, span)
             };
         }
-        let (value, distance) = reader.address_value(self.state, start)?;
+        let (value, way) = reader.address_value(self.state, start)?;
         let span = Span::new(start, reader.at);
+        if reader.peek() == Some(b'=') {
+            let whole = format!("{name}{value}=");
+            let span = Span::new(start, reader.at + 1);
+            return Err(extended_address(&whole, span));
+        }
+        if way.is_some() && !b"XYZABCIJK".contains(&letter) {
+            return Err(no_way(name, span));
+        }
         let axis = b"XYZ".iter().position(|&axis| axis == letter);
         match letter {
             b'G' => self.code(value, span),
@@ -152,29 +167,45 @@ impl Line<'_> {
                 Ok(())
             }
             _ => {
-                if let (Some(axis), Some(_)) = (axis, self.frame) {
+                if let (Some(axis), Some(_), None) = (axis, self.frame, way) {
                     self.offsets[axis] = Some(value);
                     return Ok(());
                 }
-                let value = match (distance, axis) {
-                    (Some(wanted), Some(axis)) => self.converted(value, wanted, axis),
-                    _ => value,
-                };
-                self.add(letter, value, span)
+                self.add_by_way(letter, value, way, span)
             }
         }
     }
 
-    /// A coordinate of the other distance mode, as one of the mode in force.
-    fn converted(&self, value: f64, wanted: Distance, axis: usize) -> f64 {
-        let mode = self.block.distance.unwrap_or(self.state.modal.distance);
-        let units = self.block.units.unwrap_or(self.state.modal.units);
-        let here = units.written(self.state.program[axis]);
-        match (wanted, mode) {
-            (Distance::Absolute, Distance::Incremental) => value - here,
-            (Distance::Incremental, Distance::Absolute) => value + here,
-            _ => value,
+    /// A word that may say which way its number is meant.
+    fn add_by_way(
+        &mut self,
+        letter: u8,
+        value: f64,
+        way: Option<Way>,
+        span: Span,
+    ) -> Result<(), Fault> {
+        let Some(way) = way else {
+            return self.add(letter, value, span);
+        };
+        let takes = match way {
+            Way::Absolute | Way::Incremental => b"XYZABCIJK@^".contains(&letter),
+            Way::Shortest | Way::Positive | Way::Negative => b"ABC".contains(&letter),
+        };
+        let name = match letter {
+            b'@' => "RP".to_owned(),
+            b'^' => "AP".to_owned(),
+            _ => char::from(letter).to_string(),
+        };
+        if !takes || self.frame.is_some() {
+            return Err(no_way(&name, span));
         }
+        let turns = !matches!(way, Way::Absolute | Way::Incremental);
+        if turns && !(0.0..=WHOLE_TURN).contains(&value) {
+            let reason = MachiningError::OutsideTurn { value };
+            return Err(Fault::new(span, reason.into()));
+        }
+        self.block.set_way(letter, way);
+        self.add(letter, value, span)
     }
 
     /// A word of several letters.
@@ -212,13 +243,13 @@ impl Line<'_> {
                 return Ok(());
             }
             "AP" | "RP" if reader.equals_follows() => {
-                let value = reader.expression(self.state)?;
+                let (value, way) = reader.way_value(self.state)?;
                 let letter = if name == "RP" { b'@' } else { b'^' };
-                return self.add(letter, value, Span::new(start, reader.at));
+                return self.add_by_way(letter, value, way, Span::new(start, reader.at));
             }
             "RET" => return self.add(b'M', 2.0, span),
             "SPOS" if reader.equals_follows() => {
-                return reader.expression(self.state).map(|_| ());
+                return reader.way_value(self.state).map(|_| ());
             }
             "PROC" | "EXTERN" => {
                 reader.skip_line();
@@ -299,6 +330,25 @@ impl Line<'_> {
         }
         Ok(())
     }
+}
+
+/// A refusal of `AC( )` and its like on a word that does not take it.
+fn no_way(word: &str, span: Span) -> Fault {
+    let word = word.into();
+    let what = "AC( ) and IC( ) are for X Y Z A B C I J K RP AP, DC( ) ACP( ) ACN( ) for A B C";
+    Fault::new(span, Reason::WordNotSupported { word, what })
+}
+
+/// A refusal of an address with a number of its own, as in `A3=`.
+fn extended_address(word: &str, span: Span) -> Fault {
+    let what = match word {
+        "A3=" | "B3=" | "C3=" | "A2=" | "B2=" | "C2=" | "A4=" | "B4=" | "C4=" | "A5=" | "B5="
+        | "C5=" => "orientations by vectors and angles",
+        "I1=" | "J1=" | "K1=" => "arcs by a point on them",
+        _ => "addresses of several channels, axes and spindles",
+    };
+    let word = word.into();
+    Fault::new(span, Reason::WordNotSupported { word, what })
 }
 
 pub(crate) fn unknown(word: &str, span: Span) -> Fault {

@@ -17,7 +17,7 @@ impl Line<'_> {
             64.0, 90.0, 91.0, 93.0, 94.0, 97.0,
         ];
         if (value - number).abs() > 1e-9 {
-            return self.add(b'G', value, span);
+            return Err(unknown(&format!("G{value}"), span));
         }
         // Fine ways of stopping, circles around corners, and the language of this page.
         if is(&[290.0, 450.0, 601.0, 602.0, 603.0]) {
@@ -53,7 +53,8 @@ impl Line<'_> {
 /// Codes of RS274/NGC alone.
 pub(crate) fn is_foreign(value: f64) -> bool {
     [
-        62.0, 63.0, 64.0, 65.0, 66.0, 67.0, 68.0, 70.0, 71.0, 72.0, 73.0, 98.0, 99.0,
+        60.0, 62.0, 63.0, 64.0, 65.0, 66.0, 67.0, 68.0, 70.0, 71.0, 72.0, 73.0, 98.0, 99.0, 128.0,
+        129.0, 428.0, 429.0,
     ]
     .iter()
     .any(|one| (one - value).abs() < 0.5)

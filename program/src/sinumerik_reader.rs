@@ -3,7 +3,7 @@
 //! Not here: what they mean, see `sinumerik`, and expressions, see `sinumerik_value`.
 
 use crate::arithmetic_error::ArithmeticError;
-use crate::codes::Distance;
+use crate::codes::Way;
 use crate::error::Fault;
 use crate::lower::Lowering;
 use crate::number::number;
@@ -125,39 +125,51 @@ impl<'a> Reader<'a> {
         Some(String::from_utf8_lossy(&text[..end]).into_owned())
     }
 
-    /// The value of an address: a number, or an expression behind `=`; `AC( )` and `IC( )` say that
-    /// it is absolute or incremental.
+    /// The value of an address: a number, or an expression behind `=`; `AC( )`, `IC( )`, `DC( )`, `ACP( )` and
+    /// `ACN( )` say whether it is a place or a step, and which way a rotary axis goes there.
     pub(crate) fn address_value(
         &mut self,
         state: &Lowering,
         start: usize,
-    ) -> Result<(f64, Option<Distance>), Fault> {
+    ) -> Result<(f64, Option<Way>), Fault> {
         self.skip_blanks();
         if self.peek() == Some(b'=') {
             self.at += 1;
-            self.skip_blanks();
-            let here = self.at;
-            let distance = match self.next_name().as_str() {
-                "AC" => Some(Distance::Absolute),
-                "IC" => Some(Distance::Incremental),
-                _ => None,
-            };
-            if distance.is_none() {
-                self.at = here;
-            }
-            return Ok((self.expression(state)?, distance));
+            return self.way_value(state);
         }
-        match number(self.line, self.at) {
-            Ok((value, end)) if value.is_finite() => {
-                self.at = end;
-                Ok((value, None))
-            }
+        match self.plain_number() {
+            Some(value) if value.is_finite() => Ok((value, None)),
             _ => {
                 let letter = self.line.get(start).map_or('?', |&byte| char::from(byte));
                 let span = Span::new(start, start + 1);
                 Err(Fault::new(span, Reason::NumberMissing { letter }))
             }
         }
+    }
+
+    /// An expression, or one within a way.
+    pub(crate) fn way_value(&mut self, state: &Lowering) -> Result<(f64, Option<Way>), Fault> {
+        self.skip_blanks();
+        let here = self.at;
+        let way = match self.next_name().as_str() {
+            "AC" => Some(Way::Absolute),
+            "IC" => Some(Way::Incremental),
+            "DC" => Some(Way::Shortest),
+            "ACP" => Some(Way::Positive),
+            "ACN" => Some(Way::Negative),
+            _ => None,
+        };
+        self.skip_blanks();
+        let way = way.filter(|_| self.peek() == Some(b'('));
+        let Some(way) = way else {
+            self.at = here;
+            return Ok((self.expression(state)?, None));
+        };
+        let start = self.at;
+        self.at += 1;
+        let value = self.expression(state)?;
+        self.close(start)?;
+        Ok((value, Some(way)))
     }
 
     /// Values in round brackets, separated by commas; empty places are 0.
@@ -224,9 +236,27 @@ impl<'a> Reader<'a> {
 
     /// Takes a number, if one stands here.
     pub(crate) fn plain_number(&mut self) -> Option<f64> {
-        let (value, end) = number(self.line, self.at).ok()?;
+        // Blanks end a number here, and `EX` begins its exponent.
+        let blanks = length(self.rest(), |byte| matches!(byte, b' ' | b'\t'));
+        let from = self.at + blanks;
+        let digits = length(&self.line[from..], |byte| !matches!(byte, b' ' | b'\t'));
+        let word = &self.line[..from + digits];
+        let (value, end) = number(word, from).ok()?;
         self.at = end;
-        Some(value)
+        let exponent = self.rest().strip_prefix(b"EX");
+        let Some(exponent) = exponent.or_else(|| self.rest().strip_prefix(b"ex")) else {
+            return Some(value);
+        };
+        let signed = length(exponent, |byte| matches!(byte, b'+' | b'-')).min(1);
+        let digits = length(&exponent[signed..], |byte| byte.is_ascii_digit());
+        if digits == 0 {
+            return Some(value);
+        }
+        let power = std::str::from_utf8(&exponent[..signed + digits]).ok()?;
+        self.at += 2 + signed + digits;
+        // As one number, so that it is rounded once.
+        let mantissa = std::str::from_utf8(&self.line[from..end]).ok()?;
+        format!("{mantissa}e{power}").parse().ok().or(Some(value))
     }
 
     /// Takes a name behind blanks if it is the one wanted.

@@ -165,7 +165,7 @@ impl Reader<'_> {
         }
     }
 
-    fn close(&mut self, start: usize) -> Result<(), Fault> {
+    pub(crate) fn close(&mut self, start: usize) -> Result<(), Fault> {
         self.skip_blanks();
         if self.peek() != Some(b')') {
             return Err(self.fault(start, ArithmeticError::NotClosed));

@@ -1,4 +1,4 @@
-//! Splines as chords: quadratic, cubic and rational ones, in the plane XY.
+//! Splines as chords: quadratic and cubic ones in the plane XY, rational ones in that of the arcs.
 //!
 //! Source: `G5`, `G5.1` and `G5.2` `G5.3` of LinuxCNC. A Bezier curve lies within its control points;
 //! it is halved until they are within a share of the tolerance of a chord, and the moves keep the rest
@@ -6,7 +6,7 @@
 //! splines with knots of their own, see `knot_spline`.
 
 use crate::bezier::{MOST_HALVINGS, Weighted, beziers, even_knots, flatten};
-use crate::block::Block;
+use crate::block::{AXES, Block};
 use crate::codes::{Distance, Group, Motion, PathControl, Plane};
 use crate::error::Fault;
 use crate::lower::{Lowering, MOST_MOVES};
@@ -119,7 +119,7 @@ impl Lowering {
                 points: vec![weighted(self.program)],
             });
         }
-        if block.first_of(b"XY").is_none() {
+        if block.first_of(&AXES).is_none() {
             return Ok(());
         }
         let end = self.end(block)?;
@@ -170,8 +170,10 @@ impl Lowering {
         motion: Option<Motion>,
     ) -> Result<(), Fault> {
         if let Some(spline) = &self.knot_spline {
+            // LinuxCNC writes the code again in blocks with a knot alone.
+            let same = block.motion.is_none_or(|code| code == Motion::Knots);
             let goes_on = motion == Some(Motion::Knots) && block.is_plain();
-            if !goes_on || block.motion.is_some() {
+            if !goes_on || !same {
                 return Err(Fault::new(motion_span(block), spline.incomplete().into()));
             }
             return Ok(());
@@ -187,15 +189,18 @@ impl Lowering {
 
     pub(crate) fn check_spline(&self, block: &Block, motion: Motion) -> Result<(), Fault> {
         let in_space = motion == Motion::Knots;
-        let state = if self.modal.plane != Plane::Xy && !in_space {
+        let in_plane = motion == Motion::Nurbs;
+        let normal = AXES[self.modal.plane.normal()];
+        let state = if self.modal.plane != Plane::Xy && !in_space && !in_plane {
             "outside the plane XY (G17)"
         } else if self.compensation.is_some() {
             "while cutter compensation is on (G40 ends it)"
-        } else if block.first_of(b"@^ABC").is_some() || block.has(b'Z') && !in_space {
-            if in_space {
-                "with words other than X, Y and Z"
-            } else {
-                "with words other than X and Y"
+        } else if block.first_of(b"@^ABCUVW").is_some() || block.has(normal) && !in_space {
+            match (in_space, self.modal.plane) {
+                (true, _) => "with words other than X, Y and Z",
+                (_, Plane::Xy) => "with words other than X and Y",
+                (_, Plane::Zx) => "with words other than Z and X",
+                (_, Plane::Yz) => "with words other than Y and Z",
             }
         } else if motion != Motion::Quadratic && self.modal.distance == Distance::Incremental {
             "with incremental distances (G91)"

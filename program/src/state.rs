@@ -6,10 +6,11 @@
 use crate::arithmetic_error::ArithmeticError;
 use crate::codes::{Distance, FeedMode, Plane};
 use crate::error::Fault;
-use crate::expression::Parameter;
+use crate::expression::{Evaluator, LONGEST_NAME, Parameter};
 use crate::lexer::Assignment;
 use crate::lower::Lowering;
-use crate::parameters::Values;
+use crate::others::ROTARY;
+use crate::parameters::{LARGEST_PARAMETER, Values};
 use crate::units::Units;
 use toolglide_kinematics::Vector;
 
@@ -20,6 +21,7 @@ const DIAMETER: u32 = 5410;
 
 /// First parameter of the position in the program.
 const POSITION: u32 = 5420;
+const POSITION_OF_OTHERS: u32 = 5423;
 
 impl Values for Lowering {
     fn numbered(&self, number: u32) -> f64 {
@@ -34,6 +36,15 @@ impl Values for Lowering {
                 units.written(tool.map_or(0.0, |tool| tool.diameter))
             }
             POSITION..=5422 => units.written(self.program[(number - POSITION) as usize]),
+            POSITION_OF_OTHERS..=5428 => {
+                let axis = (number - POSITION_OF_OTHERS) as usize;
+                let place = self.others.in_program(axis);
+                if axis < ROTARY {
+                    place
+                } else {
+                    units.written(place)
+                }
+            }
             _ => self.parameters.get(number),
         }
     }
@@ -55,13 +66,18 @@ impl Lowering {
             "_x" => units.written(self.program[0]),
             "_y" => units.written(self.program[1]),
             "_z" => units.written(self.program[2]),
-            "_a" => self.rotary[0],
-            "_b" => self.rotary[1],
-            "_c" => self.rotary[2],
+            "_a" => self.others.in_program(0),
+            "_b" => self.others.in_program(1),
+            "_c" => self.others.in_program(2),
+            "_u" => units.written(self.others.in_program(3)),
+            "_v" => units.written(self.others.in_program(4)),
+            "_w" => units.written(self.others.in_program(5)),
+            "_abs_a" => self.others.at[0],
+            "_abs_b" => self.others.at[1],
+            "_abs_c" => self.others.at[2],
             "_abs_x" => units.written(self.position[0]),
             "_abs_y" => units.written(self.position[1]),
             "_abs_z" => units.written(self.position[2]),
-            "_u" | "_v" | "_w" => 0.0,
             "_tool_offset" => truth(self.offsets.tool() != Vector::<3>::zeros()),
             "_feed" => units.written(modal.feedrate.unwrap_or(0.0)) * 60.0,
             "_rpm" => modal.spindle_speed,
@@ -117,6 +133,34 @@ impl Lowering {
             Parameter::Named(name) => self.parameters.set_named(name, value),
         };
         outcome.map_err(|reason| Fault::new(assignment.span, reason.into()))
+    }
+
+    /// Gives a parameter the value that somebody else than the program has for it.
+    pub(crate) fn give_parameter(&mut self, name: &str, value: f64) -> Result<(), ArithmeticError> {
+        let bare = name.trim();
+        let bare = bare.strip_prefix('#').unwrap_or(bare).trim();
+        if let Ok(number) = bare.parse::<u32>() {
+            let most = LARGEST_PARAMETER;
+            if !(1..=most).contains(&number) {
+                let value = f64::from(number);
+                return Err(ArithmeticError::NoSuchParameter { value, most });
+            }
+            return self.parameters.set(number, value);
+        }
+        let inside = bare
+            .strip_prefix('<')
+            .and_then(|rest| rest.strip_suffix('>'));
+        let text = format!("<{}>", inside.unwrap_or(bare));
+        let mut evaluator = Evaluator::new(text.as_bytes(), 0, &self.parameters);
+        let named = evaluator.name().ok();
+        let Some(name) = named.filter(|_| evaluator.at == text.len()) else {
+            let most = LONGEST_NAME;
+            return Err(ArithmeticError::BadName { most });
+        };
+        if self.predefined(&name).is_some() {
+            return Err(ArithmeticError::Predefined { name });
+        }
+        self.parameters.set_named(&name, value)
     }
 
     /// What a subroutine gives back.

@@ -14,6 +14,34 @@ pub enum StatementError {
         /// Its major word.
         name: Box<str>,
     },
+    /// A statement that moves an axis or the part, and is not read.
+    #[error("statement {name} is not supported, nor ever skipped: {what}")]
+    Moves {
+        /// Its major word.
+        name: Box<str>,
+        /// What it asks for.
+        what: &'static str,
+    },
+    /// Axes that are no coordinate system.
+    #[error(
+        "the axes of MSYS have the lengths {} and {} and a scalar product of {product}, but must be upright unit vectors",
+        lengths[0],
+        lengths[1]
+    )]
+    NoSystem {
+        /// Lengths of the X axis and of the Y axis.
+        lengths: [f64; 2],
+        /// Their scalar product.
+        product: f64,
+    },
+    /// A feedrate for each turn of a spindle whose speed is not known.
+    #[error(
+        "a feedrate for each turn of the spindle needs a speed in turns a minute before it: write SPINDL/RPM, or MMPM"
+    )]
+    NoSpindleSpeed,
+    /// A feedrate as the inverse of a time.
+    #[error("inverse time is not read in cutter location files: write a feedrate in MMPM or IPM")]
+    InverseTime,
     /// Something that should be a number.
     #[error("a number is missing here")]
     NotANumber,

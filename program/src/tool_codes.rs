@@ -32,6 +32,7 @@ impl Lowering {
         let Some(number) = whole(block, b'P', "tool number", 0, LARGEST_TOOL)? else {
             return Err(missing(block, 'P'));
         };
+        Self::no_others(block, "in the table of tools")?;
         let mut tool = self.tools.get(number).unwrap_or(Tool {
             offset: Vector::zeros(),
             diameter: 0.0,
@@ -84,6 +85,9 @@ impl Lowering {
         kind: ToolLength,
         remarks: &mut Vec<Remark>,
     ) -> Result<(), Fault> {
+        if matches!(kind, ToolLength::Given | ToolLength::Added) {
+            Self::no_others(block, "as the length of a tool")?;
+        }
         let given = |state: &Self| -> Result<Vector<3>, Fault> {
             let mut offset = Vector::zeros();
             for (axis, letter) in AXES.into_iter().enumerate() {

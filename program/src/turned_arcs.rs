@@ -49,13 +49,14 @@ impl Lowering {
         let offsets = std::mem::replace(&mut self.offsets, Offsets::new());
         let found = arc(block, self, motion, self.program, end);
         self.offsets = offsets;
-        let arc = match found {
-            Ok(arc) => arc,
+        let (arc, mismatch) = match found {
+            Ok(found) => found,
             Err(fault) => {
                 (self.program, self.position) = (end, self.offsets.on_machine(end));
                 return Err(fault);
             }
         };
+        self.tell_rounding(block, mismatch);
         let feedrate = self.feedrate(block, arc.length())?;
         let (first, last) = arc.radii();
         let chords = count(first.max(last), arc.sweep(), self.chord_error());

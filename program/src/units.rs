@@ -51,10 +51,25 @@ impl Units {
         within_reach(letter, self.length(value))
     }
 
+    /// By how much the radii at both ends of an arc may differ for the rounding of its coordinates, mm: twice the
+    /// diagonal of 0.01 mm or 0.001 inch, as LinuxCNC has it.
+    pub(crate) fn arc_rounding(self) -> f64 {
+        let digit = match self {
+            Self::Inch => 0.001,
+            Self::Millimeter => 0.01,
+        };
+        2.0 * std::f64::consts::SQRT_2 * self.length(digit)
+    }
+
     /// A feedrate in mm/s from units a minute.
     pub(crate) fn feedrate(self, value: f64) -> f64 {
         self.length(value) / MINUTE
     }
+}
+
+/// A feedrate of mm/s in mm/min, to the digits in which people write it.
+pub(crate) fn per_minute(speed: f64) -> f64 {
+    (speed * MINUTE * 1e6).round() / 1e6
 }
 
 /// Refuses a length beyond [`FARTHEST`].

@@ -22,7 +22,7 @@ impl Motion {
             Self::Cubic => b"IJPQ",
             Self::Quadratic => b"IJ",
             Self::Nurbs => b"PL",
-            Self::Knots => b"PKR",
+            Self::Knots => b"PKRQ",
             Self::Cycle(73 | 83) => b"RLQP",
             Self::Cycle(81 | 85) => b"RL",
             Self::Cycle(76) | Self::BackBore => b"RLPQIJ",
@@ -99,7 +99,6 @@ pub(crate) fn check(
     block: &Block,
     motion: Option<Motion>,
     settings: &Settings,
-    extruder_noted: &mut bool,
     remarks: &mut Vec<Remark>,
 ) -> Result<(), Fault> {
     let Some(_) = block.first_of(&SHARED) else {
@@ -113,7 +112,8 @@ pub(crate) fn check(
             (None, _) => {
                 let what = match letter {
                     b'D' => "number of a cutter radius or a speed",
-                    b'E' => "extruder or spindle-tied motion",
+                    b'E' if block.printer => continue,
+                    b'E' => "the extruder of a printer, which this program does not seem to be for",
                     b'H' => "number of a tool length",
                     b'L' => "count of repetitions",
                     _ => return Err(unused(block, letter)),
@@ -121,13 +121,10 @@ pub(crate) fn check(
                 let code = Code::letter(letter);
                 let reason = Reason::NotSupported { code, what };
                 let span = block.span(letter);
-                if !settings.lenient && letter != b'E' {
+                if !settings.lenient || letter == b'E' {
                     return Err(Fault::new(span, reason));
                 }
-                // A print has one on almost every line.
-                if letter != b'E' || !std::mem::replace(extruder_noted, true) {
-                    remarks.push((span, Notice::Skipped(reason)));
-                }
+                remarks.push((span, Notice::Skipped(reason)));
             }
         }
     }

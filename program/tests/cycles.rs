@@ -114,3 +114,16 @@ fn incomplete_cycles_are_refused() {
         "{reason}"
     );
 }
+
+#[test]
+fn holes_may_be_named_by_distance_and_angle() {
+    let text = "F100\nG0 Z10\nG99 G81 @10 ^0 Z-2 R1\n^90\nG91 ^90 L2\nG80\n";
+    let bottoms: Vec<[f64; 3]> = common::ends(text)
+        .into_iter()
+        .filter(|end| (end[2] + 2.0).abs() < 1e-9)
+        .collect();
+    let expected = [[10.0, 0.0, -2.0], [0.0, 10.0, -2.0]];
+    common::assert_close(&bottoms[..2].concat(), &expected.concat(), "G90");
+    let refused = common::try_read("F100\nG0 Z10\nG18 G81 @10 ^0 Y-2 R1\n", common::settings());
+    assert!(refused.is_err(), "outside G17");
+}

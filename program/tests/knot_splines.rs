@@ -140,3 +140,44 @@ fn knots_stand_in_splines_only() {
     let (.., reason) = refusal("F600\nG1 X1 K1\n");
     assert_eq!(reason, Reason::Unused { letter: 'K' }, "K");
 }
+
+#[test]
+fn a_spline_as_linuxcnc_writes_it_is_the_same_curve() {
+    let points = "X64.124 Y106.12 R1 K0\nX65.998 Y103.621 R1 K0\nX80.988 Y83.634 R2 K1\nX92.98 Y35.666 R1 K2\n";
+    let begin = "F600\nG0 X63.562 Y106.12\n";
+    let first = "X63.562 Y106.12 R1 K0 P3";
+    let ours = format!("{begin}G6.2 {first}\n{points}K3\nK3\nK3\nG1 X0\n");
+    let expected = common::ends(&ours);
+    assert!(expected.len() > 20, "{} moves", expected.len());
+    for way in 1..=3 {
+        let theirs =
+            format!("{begin}G6.2 {first} Q{way}\n{points}G6.2 K3\nG6.2 K3\nG6.2 K3\nG1 X0\n");
+        assert_eq!(common::ends(&theirs), expected, "Q{way}");
+    }
+    for wrong in ["Q4", "Q0", "Q1.5"] {
+        let text = format!("{begin}G6.2 {first} {wrong}\n{points}K3\nK3\nK3\n");
+        assert!(
+            common::try_read(&text, common::settings()).is_err(),
+            "{wrong}"
+        );
+    }
+}
+
+#[test]
+fn a_spline_of_control_points_may_lie_in_any_plane() {
+    let spline = "G5.2 P1 L3\nU1 V2\nU3 V5 P2\nU6 V1\nG5.3\n";
+    let text = |plane: &str, first: &str, second: &str| {
+        let points = spline.replace('U', first).replace('V', second);
+        common::ends(&format!("F600\n{plane}\n{points}"))
+    };
+    let flat = text("G17", "X", "Y");
+    let turned = text("G18", "Z", "X");
+    let upright = text("G19", "Y", "Z");
+    assert!(flat.len() > 10, "{} chords", flat.len());
+    for ((one, other), third) in flat.iter().zip(&turned).zip(&upright) {
+        assert_close(&[one[0], one[1]], &[other[2], other[0]], "G18");
+        assert_close(&[one[0], one[1]], &[third[1], third[2]], "G19");
+    }
+    let wrong = "F600\nG18\nG5.2 L3\nX1 Y2\nX3\nG5.3\n";
+    assert!(common::try_read(wrong, common::settings()).is_err(), "Y");
+}

@@ -1,14 +1,14 @@
-//! What moves no axis becomes a warning: everywhere in lenient reading, words of printers always.
+//! What moves no axis becomes a warning in lenient reading.
 
 mod common;
 
-use common::{FILE, lenient, refusal, refusal_with, settings, try_read};
+use common::{FILE, lenient, refusal_with, settings, try_read};
 use toolglide_kinematics::Vector;
 use toolglide_program::{MOST_WARNINGS, Notice, Program, Reason};
 
 #[test]
 fn words_that_move_no_axis_become_warnings() {
-    let text = "M107\nM104 S200\nG1 X5 E2.5 F600\nG97 S1000 M3\nG96 D2500 S200\nG98\nM100 P1 Q2\n";
+    let text = "M107\nM104 S200\nG1 X5 F600\nG97 S1000 M3\nG96 D2500 S200\nG98\nM100 P1 Q2\n";
     let mut program = Program::new(text.as_bytes(), FILE, lenient());
     let moves: Vec<_> = program.by_ref().map(Result::unwrap).collect();
     assert_eq!(moves.len(), 1, "one move");
@@ -25,7 +25,6 @@ fn words_that_move_no_axis_become_warnings() {
     let expected = [
         (1, "M107"),
         (2, "M104"),
-        (3, "E2.5"),
         (5, "G96"),
         (5, "D2500"),
         (7, "M100"),
@@ -58,6 +57,7 @@ fn words_that_may_move_an_axis_stay_refused() {
         "G0 A5",
         "G0 U1",
         "G95",
+        "G0 X5 E2.5",
         "G33 Z1 K1",
         "G123",
     ] {
@@ -95,22 +95,4 @@ fn the_number_of_warnings_kept_is_bounded() {
         .iter()
         .all(|warning| matches!(warning.notice(), Notice::Skipped(_)));
     assert!(all_skipped, "skipped");
-}
-
-#[test]
-fn words_of_printers_are_skipped_with_one_warning() {
-    let mut program = Program::new(
-        &b"M104 S200\nG92 E0\nG1 X1 E2 F60\nX2 E3"[..],
-        FILE,
-        settings(),
-    );
-    assert_eq!(program.by_ref().map(Result::unwrap).count(), 2, "moves");
-    let words: Vec<&str> = program
-        .warnings()
-        .iter()
-        .map(|one| one.place().word())
-        .collect();
-    assert_eq!(words, ["M104", "E0"], "warnings");
-    let (.., reason) = refusal("M201 X1");
-    assert!(matches!(reason, Reason::UnknownCode { .. }), "{reason}");
 }

@@ -156,7 +156,7 @@ fn wrong_statements_are_refused_at_their_place() {
         (
             "FEDRAT/9\nFROM/5,0,0\nCIRCLE/0,0,0,0,0,1,5\nGOTO/0,6,0",
             "part.ngc:4:1: the end of the arc is 6 mm from its axis, but the radius is 5 mm; they \
-             may differ by 0.005 mm",
+             may differ by 0.028284271247461905 mm",
         ),
     ] {
         let shown = try_read(text, Language::CutterLocations)

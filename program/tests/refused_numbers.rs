@@ -86,16 +86,6 @@ fn numbers_out_of_their_bounds_are_refused() {
     );
     refuses!("T-1", 1, 1, "T-1", Reason::NotWhole { .. });
     refuses!("N-1", 1, 1, "N-1", Reason::Negative { .. });
-    refuses!(
-        "G64 P0",
-        1,
-        5,
-        "P0",
-        Reason::NotPositive {
-            quantity: "tolerance",
-            ..
-        }
-    );
     refuses!("G64 P-1", 1, 5, "P-1", Reason::Negative { .. });
     refuses!("G64 Q-1", 1, 5, "Q-1", Reason::Negative { .. });
     refuses!(

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 use toolglide_kinematics::{Move, Tolerance, Vector};
-use toolglide_program::{Program, ProgramError, Settings};
+use toolglide_program::{Language, Program, ProgramError, Settings};
 
 /// Where the programs lie.
 const PROGRAMS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/gcode");
@@ -51,5 +51,8 @@ pub fn moves(text: &[u8], name: &str, tolerance: f64) -> Result<Vec<Move<3>>, Pr
     let mut settings = Settings::new(Tolerance::new(tolerance).unwrap());
     settings.lenient = true;
     settings.start = Vector::zeros();
-    Program::new(text, name, settings).collect()
+    let language = Language::of(std::path::Path::new(name), text);
+    Program::new(text, name, settings)
+        .in_language(language)
+        .collect()
 }

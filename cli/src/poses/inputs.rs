@@ -6,7 +6,7 @@ use crate::args::{JobArgs, TuningArgs};
 use crate::error::CliError;
 use crate::filters;
 use crate::setup::{Setup, is_straight, machine};
-use crate::source::{Source, language, subroutines};
+use crate::source::{Source, language, poses_with_parameters, subroutines};
 use crate::values::PerAxis;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -132,12 +132,13 @@ impl Inputs {
             ..Settings::new(self.setup.tolerance)
         };
         let boxed: Box<dyn BufRead> = Box::new(reader);
+        let program = Poses::new(boxed, &name, settings, language)
+            .with_tools(self.setup.tools.clone())
+            .with_reference_points(&self.setup.reference_points)
+            .with_subroutines(subroutines(&job.program))
+            .for_machine(&self.setup.machine);
         let mut legs = Legs {
-            program: Poses::new(boxed, &name, settings, language)
-                .with_tools(self.setup.tools.clone())
-                .with_reference_points(&self.setup.reference_points)
-                .with_subroutines(subroutines(&job.program))
-                .for_machine(&self.setup.machine),
+            program: poses_with_parameters(program, &job.parameters)?,
             resolver: None,
             machine: self.machine.as_ref(),
             orientation_tolerance: self.orientation_tolerance,

@@ -13,7 +13,7 @@ use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
 use crate::frame::Frame;
 use crate::machining_error::MachiningError;
-use crate::point::ROTARY;
+use crate::others::{OTHERS, ROTARY};
 use crate::program::Program;
 use crate::reason::Reason;
 use crate::units::within_reach;
@@ -75,9 +75,9 @@ impl Fanuc {
                         there[axis] = home[axis];
                     }
                 }
-                for (axis, letter) in ROTARY.into_iter().enumerate() {
+                for (axis, letter) in OTHERS.into_iter().take(ROTARY).enumerate() {
                     if word(words, letter).is_some() || !any && program.block.rotary {
-                        state.rotary[axis] = home[axis + 3];
+                        state.others.at[axis] = home[axis + 3];
                     }
                 }
                 let end = state.offsets.in_program(there);
@@ -92,7 +92,7 @@ impl Fanuc {
         words: &[Word],
         program: &mut Program<R>,
     ) -> Result<(), Fault> {
-        for (axis, letter) in ROTARY.into_iter().enumerate() {
+        for (axis, letter) in OTHERS.into_iter().take(ROTARY).enumerate() {
             let Some(word) = word(words, letter) else {
                 continue;
             };
@@ -102,10 +102,10 @@ impl Fanuc {
             }
             let state = &mut program.lowering;
             let from = match state.modal.distance {
-                Distance::Absolute => 0.0,
-                Distance::Incremental => state.rotary[axis],
+                Distance::Absolute => state.others.zero(axis),
+                Distance::Incremental => state.others.at[axis],
             };
-            state.rotary[axis] = within_reach(char::from(letter), from + word.value)
+            state.others.at[axis] = within_reach(char::from(letter), from + word.value)
                 .map_err(|reason| Fault::new(word.span, reason))?;
         }
         Ok(())

@@ -276,7 +276,7 @@ impl Variables for Scope<'_> {
         };
         let length = |point: Vector<3>, axis: usize| match axis {
             0..=2 => units.written(point[axis]),
-            _ => state.rotary.get(axis - 3).copied().unwrap_or(0.0),
+            _ => state.others.at.get(axis - 3).copied().unwrap_or(0.0),
         };
         Ok(match variable {
             0 => NULL,
