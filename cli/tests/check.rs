@@ -131,3 +131,64 @@ fn secondary_axes_are_counted_though_no_machine_moves_them() {
     let expected = "machine \"gantry\" has no axis U";
     assert!(run.err.contains(expected), "{}", run.err);
 }
+
+#[test]
+fn a_print_is_known_and_its_filament_is_told() {
+    let folder = Folder::new();
+    let text = "M83\nM104 S200\nM117 One (of two\nG1 X10 E0.5 F1800\nG1 E-0.25 F600\n";
+    let program = folder.write("part.gcode", text);
+    let run = toolglide(&["check", &program, "--json"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let survey: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(survey["dialect"], "printer", "dialect");
+    let filament = survey["filament_mm"].as_f64().unwrap();
+    assert!((filament - 0.25).abs() < 1e-9, "{filament} mm");
+    let run = toolglide(&["check", &program]);
+    assert!(run.out.contains("filament     0.250 mm"), "{}", run.out);
+}
+
+#[test]
+fn parameters_are_given_on_the_command_line() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", "F#<_hal[cut.feed]>\nG1 X#31\n");
+    let run = toolglide(&["check", &program]);
+    assert_eq!(run.code, 2, "{}", run.out);
+    assert!(run.err.contains("--parameter"), "{}", run.err);
+    let given = [
+        "--parameter",
+        "_hal[cut.feed]=1200",
+        "--parameter",
+        "31=-7.5",
+    ];
+    let run = toolglide(&[&["check", &program], &given[..]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.contains("-7.500 to -7.500"), "{}", run.out);
+    let run = toolglide(&["check", &program, "--parameter", "5420=1"]);
+    assert_eq!(run.code, 2, "{}", run.err);
+}
+
+#[test]
+fn a_language_that_is_not_read_is_named() {
+    let folder = Folder::new();
+    for (name, text, language) in [
+        (
+            "a.h",
+            "0 BEGIN PGM A MM\n1 L X+0 FMAX\n2 END PGM A MM\n",
+            "Heidenhain Klartext",
+        ),
+        ("a.stpnc", "ISO-10303-21;\nHEADER;\nENDSEC;\n", "STEP-NC"),
+        (
+            "a.nc",
+            "G50 S2000\nT0101\nG96 S180 M3\nG0 X52 Z2\n",
+            "ISO code of a lathe",
+        ),
+    ] {
+        let program = folder.write(name, text);
+        for command in ["check", "plan"] {
+            let run = toolglide(&[command, &program]);
+            assert_eq!(run.code, 2, "{}", run.err);
+            let times = run.err.matches("which is not read").count();
+            assert!(times == 1 && run.err.contains(language), "{}", run.err);
+        }
+    }
+}

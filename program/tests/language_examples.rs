@@ -71,6 +71,34 @@ fn programs_of_rotary_axes_are_read_as_poses() {
     }
 }
 
+#[test]
+fn dialects_are_told_apart_and_read() {
+    for (file, language, moves, told) in [
+        ("printer.gcode", Language::Printer, 16, 10),
+        ("rounded.ngc", Language::Ngc, 17, 1),
+    ] {
+        let text = text(file);
+        let found = Language::of(&PathBuf::from(file), text.as_bytes());
+        assert_eq!(found, language, "{file}");
+        let mut program = Program::new(text.as_bytes(), file, settings()).in_language(found);
+        let read: Result<Vec<_>, _> = program.by_ref().collect();
+        let count = read.unwrap_or_else(|error| panic!("{error}")).len();
+        assert_eq!((count, program.warnings().len()), (moves, told), "{file}");
+    }
+    for (file, language, moves) in [
+        ("profile.cls", Language::CutterLocations, 116),
+        ("ways.mpf", Language::Sinumerik, 231),
+    ] {
+        let text = text(file);
+        let found = Language::of(&PathBuf::from(file), text.as_bytes());
+        assert_eq!(found, language, "{file}");
+        let read: Result<Vec<_>, _> =
+            Poses::new(text.as_bytes(), file, settings(), found).collect();
+        let count = read.unwrap_or_else(|error| panic!("{error}")).len();
+        assert_eq!(count, moves, "{file}");
+    }
+}
+
 /// Ends of the moves of a program that is known for one of FANUC or Haas by itself.
 fn fanuc_ends(file: &str) -> Vec<Vector<3>> {
     let text = text(file);

@@ -321,6 +321,22 @@ add("r28", "G21 F100\nG10 L2 P1 R45\nG18 G1 X1\nG2 X2 Z2 R9\nM2\n")
 add("r29", "G21 F100\nG53 G1 X1 Y1\nG92 X0\nG53 X5\nX5\nG10 L2 P1 R45 X1 Y1\nG53 X5\nX0 G53\nM2\n")
 add("r30", "G21 F100\nG93 G1 X1 F2\nX2 F4\nG0 X9\nG1 X1 Y1 F1\nG2 X3 Y1 I1 F2\nG94 F50\nX9\nM2\n")
 
+# Arcs of rounded coordinates, holes by distance and angle, feedrates of before, numbers with exponents.
+for name, text in {
+    "within": "G2 X2.028 I1", "beyond": "G2 X2.029 I1", "inch": "G20 G2 X2.0028 I1", "inch_beyond": "G20 G2 X2.0029 I1",
+    "share": "G2 X200.1 I100", "share_beyond": "G2 X200.11 I100", "most": "G2 X6002.8 I3000",
+    "most_beyond": "G2 X6002.9 I3000", "turn": "G3 X0.02 I10",
+}.items():
+    add(f"round_{name}", f"G21 F100\n{text}\nM2\n")
+add("round_two", "G21 G90 F600\nG0 X0 Y0\nG2 X2.12 Y0.88 I2.12 J-2.13\nG3 X4.25 Y1.76 I2.13 J-2.12\nM2\n")
+add("cyc_polar", "G21 F100\nG0 Z10\nG99 G81 @10 ^0 Z-2 R1\n^90\n@5\nG98 @7 ^-30 L2\nG80\nM2\n")
+add("cyc_polar91", "G21 F100\nG0 X10 Z10\nG91 G81 ^30 Z-2 R-1 L3\nG80\nG90 G0 X0\nM2\n")
+add("cyc_polarx", "G21 F100\nG0 Z10\nG81 @10 ^0 X1 Z-2 R1\nM2\n")
+add("f_before", "G21 F600\nG1 X10\nG93 G1 X20 F60\nG94 G1 X30\nM2\n")
+add("f_written", "G21 F600\nG1 X10\nG93 G1 X20 F60\nG94 F200 G1 X30\nM2\n")
+add("exponent", "G21 F600\nG1 X2.35e-12\nM2\n")
+add("exponent_f", "G21 F6e2\nG1 X2\nM2\n")
+
 
 def main():
     if len(sys.argv) != 2:
