@@ -187,12 +187,14 @@ impl<'m> Resolver<'m> {
 
     /// Whether a rotary axis, or one that no tool pose knows, has to move to be at `end`.
     fn turns(&self, end: &AxisVector) -> bool {
-        self.machine
-            .axes()
-            .iter()
+        let axes = self.machine.axes();
+        // Without an X of its own a machine calls the drives of its tool so.
+        let second = axes.iter().any(|axis| axis.name == 'X');
+        axes.iter()
             .zip(self.at.iter().zip(end.iter()))
             .any(|(axis, (start, end))| {
-                let apart = axis.kind == AxisKind::Rotary || matches!(axis.name, 'U' | 'V' | 'W');
+                let beside = second && matches!(axis.name, 'U' | 'V' | 'W');
+                let apart = axis.kind == AxisKind::Rotary || beside;
                 apart && (end - start).abs() > SAME_ORIENTATION
             })
     }
