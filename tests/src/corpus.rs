@@ -23,8 +23,16 @@ pub fn text(name: &str) -> Option<Vec<u8>> {
 /// The names of all programs of the folders `bench` and `corpus`, sorted.
 #[must_use]
 pub fn names() -> Vec<String> {
+    let mut names = names_in("bench");
+    names.extend(names_in("corpus"));
+    names
+}
+
+/// The names of all programs of a folder and those in it, sorted.
+#[must_use]
+pub fn names_in(folder: &str) -> Vec<String> {
     let mut names = Vec::new();
-    let mut folders = vec!["bench".to_owned(), "corpus".to_owned()];
+    let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
         let Ok(entries) = std::fs::read_dir(PathBuf::from(PROGRAMS).join(&folder)) else {
             eprintln!("skipped: folder {folder} is not at hand");
