@@ -25,6 +25,8 @@ pub(crate) struct Leg<const N: usize> {
     pub(crate) vertices: [u64; 2],
     /// Whether the motion rests at its end.
     pub(crate) stop: bool,
+    /// Whether it is the first part of a longer one, which goes on at its velocity.
+    pub(crate) cruises: bool,
     /// A pause at its end.
     pub(crate) dwell: Option<Pause<N>>,
 }
@@ -33,6 +35,25 @@ impl<const N: usize> Leg<N> {
     /// What merging has left of the tolerance.
     pub(crate) fn room(&self) -> Tolerance {
         self.tolerance.less(self.deviation)
+    }
+
+    /// Its two parts before and behind a distance at which the motion cruises.
+    pub(crate) fn divided(&self, distance: f64) -> (Self, Self) {
+        let middle = self.start + self.direction * distance;
+        let first = Self {
+            end: middle,
+            length: distance,
+            stop: false,
+            cruises: true,
+            dwell: None,
+            ..*self
+        };
+        let second = Self {
+            start: middle,
+            length: self.length - distance,
+            ..*self
+        };
+        (first, second)
     }
 
     /// Whether the next leg begins with a move of the path.

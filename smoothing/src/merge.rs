@@ -12,7 +12,7 @@
 //! larger for the straight line than for both moves added. Not here: motion.
 
 use crate::leg::Leg;
-use toolglide_kinematics::numeric::SHORTEST_LENGTH;
+use toolglide_kinematics::numeric::{LENGTH_SLACK, SHORTEST_LENGTH};
 use toolglide_kinematics::{Limits, Pause, Serves, Tolerance, Vector};
 
 /// Share of the tolerance that merging and chords may use. On a curve of radius `R`, chords of length
@@ -26,6 +26,10 @@ pub(crate) const ROUNDING_SHARE: f64 = 0.001;
 /// Length of moves that may be slowed to the feedrate of the moves that they are merged with, as a
 /// share of the tolerance: less than a micrometre where parts are machined.
 const NEGLIGIBLE: f64 = 0.01;
+
+/// Length of a leg to which no moves straight on are added, as a multiple of what it would be at its velocity while that is
+/// reached: twice what a stop and a start take.
+const LONG: f64 = 4.0;
 
 /// Most moves merged into one: bounds memory and the work a move. Where it cuts a straight line, there
 /// is a corner more than the tolerance asks for.
@@ -204,6 +208,7 @@ impl<const N: usize> Merger<N> {
             serves,
             vertices: [self.first, last.next],
             stop: false,
+            cruises: false,
             dwell: None,
         };
         self.anchor = last.point;
@@ -290,6 +295,19 @@ impl<const N: usize> Merger<N> {
         !add(vertex, &before.point)
     }
 
+    /// Whether a straight run up to its last vertex is so long that nothing is gained by more: the plan can be divided
+    /// on it.
+    fn is_long(&self, last: &Vertex<N>, feedrate: f64) -> bool {
+        let span = last.point - self.anchor;
+        let length = span.norm();
+        if length <= 0.0 {
+            return false;
+        }
+        let limits = self.limits.along(&(span / length));
+        let speed = feedrate.min(limits.velocity);
+        length > LONG * speed * limits.time_to_change(speed)
+    }
+
     /// Largest distance of the run from a line to `vertex`, or `None` when it cannot be merged.
     fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
         let (Some(before), Some(bounds)) = (self.run.last(), self.bounds) else {
@@ -298,6 +316,7 @@ impl<const N: usize> Merger<N> {
         if self.run.len() >= MOST_MERGED {
             return None;
         }
+        let run = (*before, bounds.slowest);
         let bounds = bounds.with(vertex);
         if self.hurries(vertex, before, &bounds) {
             return None;
@@ -318,6 +337,8 @@ impl<const N: usize> Merger<N> {
                 return None;
             }
         }
-        Some(furthest.sqrt() + bounds.bulge)
+        let deviation = furthest.sqrt() + bounds.bulge;
+        let straight = deviation <= LENGTH_SLACK;
+        (!(straight && self.is_long(&run.0, run.1))).then_some(deviation)
     }
 }

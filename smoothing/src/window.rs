@@ -12,7 +12,10 @@ use crate::scale::{balance, feed_cap, furthest, reachable};
 use crate::turn::TurnShape;
 use std::collections::VecDeque;
 use toolglide_kinematics::Tangential;
-use toolglide_kinematics::numeric::{CLOSURE, SEARCH_PRECISION};
+use toolglide_kinematics::numeric::SEARCH_PRECISION;
+
+/// A backward pass waits until of the nodes that it looks at at most so many times as many are old as are new.
+const PASSES: usize = 2;
 
 /// A straight move as the window sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +35,25 @@ pub(crate) struct Node {
     pub(crate) upper: f64,
     /// A scale of the next corner that fits when this one has `upper`.
     pub(crate) witness: f64,
+    /// Whether it is a place on a long move that is passed at its velocity whatever is around it.
+    cruises: bool,
+}
+
+impl Node {
+    fn new(shape: TurnShape, upper: f64) -> Self {
+        Self {
+            shape,
+            cap: 1.0,
+            upper,
+            witness: 0.0,
+            cruises: false,
+        }
+    }
+
+    /// Whether nothing that comes later lets it have a larger scale, but for precision.
+    fn is_final(&self) -> bool {
+        self.upper >= self.cap * (1.0 - SEARCH_PRECISION)
+    }
 }
 
 /// Scales the motions of consecutive corners, one kind of motion per corner, as moves stream in.
@@ -48,6 +70,8 @@ pub(crate) struct Window {
     due: usize,
     /// Nodes up to here have an `upper`.
     passed: usize,
+    /// Nodes up to here have the `upper` that they will keep.
+    settled: usize,
     finished: bool,
     balanced: bool,
 }
@@ -66,6 +90,7 @@ impl Window {
             batch: (size / 4).max(1),
             due: 0,
             passed: 0,
+            settled: 0,
             finished: false,
             balanced,
         };
@@ -81,15 +106,11 @@ impl Window {
     /// Begins again with the exit of a motion; whether a stop can be reached from it is not known.
     pub(crate) fn restart_after(&mut self, shape: TurnShape) {
         self.nodes.clear();
-        self.nodes.push_back(Node {
-            shape,
-            cap: 1.0,
-            upper: 1.0,
-            witness: 0.0,
-        });
+        self.nodes.push_back(Node::new(shape, 1.0));
         self.links.clear();
         self.due = 0;
         self.passed = 0;
+        self.settled = 0;
         self.finished = false;
     }
 
@@ -101,23 +122,19 @@ impl Window {
         self.batch = other.batch;
         self.due = other.due;
         self.passed = other.passed;
+        self.settled = other.settled;
         self.finished = other.finished;
         self.balanced = other.balanced;
     }
 
-    /// Takes the first move.
+    /// Takes the first move, or the first after a place that is passed at speed.
     pub(crate) fn begin(&mut self, link: Link) {
         self.links.push_back(link);
     }
 
     /// Takes the corner at the end of the last move, and the move after it.
     pub(crate) fn push(&mut self, shape: TurnShape, link: Link) {
-        let mut node = Node {
-            shape,
-            cap: 1.0,
-            upper: 0.0,
-            witness: 0.0,
-        };
+        let mut node = Node::new(shape, 0.0);
         if let (Some(before), Some(last)) = (self.links.back(), self.nodes.back_mut()) {
             node.cap = feed_cap(&shape.entry, before).min(feed_cap(&shape.exit, &link));
             if self.balanced
@@ -129,6 +146,15 @@ impl Window {
         }
         self.nodes.push_back(node);
         self.links.push_back(link);
+    }
+
+    /// Says that the last move is so long that its end is passed at a speed, whatever is before it and whatever
+    /// follows, with room for a stop.
+    pub(crate) fn divide(&mut self, speed: f64) {
+        self.nodes.push_back(Node {
+            cruises: true,
+            ..Node::new(TurnShape::through(speed), 1.0)
+        });
     }
 
     /// Says that the last move ends at rest.
@@ -146,12 +172,13 @@ impl Window {
             self.due = self.due.max(self.batch);
         }
         let fresh = known - self.passed;
-        if fresh > 0 && (self.finished || self.due > 0 || fresh >= self.batch) {
+        // A pass costs as much as it looks at, so it waits until a share of that is new.
+        let patience = (self.passed / PASSES).clamp(1, self.batch);
+        let divided = self.ends_cruising();
+        if fresh > 0 && (self.finished || divided || self.due > 0 || fresh >= patience) {
             self.backward();
         }
-        let next = self.nodes.get(1).filter(|_| self.passed > 0)?;
-        let settled = next.upper >= next.cap * (1.0 - CLOSURE);
-        if settled || self.finished || self.due > 0 {
+        if self.passed > 0 && (self.settled > 0 || self.finished || self.due > 0) {
             self.due = self.due.saturating_sub(1);
             Some(self.commit())
         } else {
@@ -159,10 +186,15 @@ impl Window {
         }
     }
 
+    /// Whether the last node is passed at speed whatever follows.
+    fn ends_cruising(&self) -> bool {
+        self.nodes.back().is_some_and(|last| last.cruises)
+    }
+
     /// How many nodes after the first have both neighbours known.
     fn known(&self) -> usize {
         let inner = self.nodes.len() - 1;
-        if self.finished {
+        if self.finished || self.ends_cruising() {
             inner
         } else {
             inner.saturating_sub(1)
@@ -173,21 +205,25 @@ impl Window {
     fn backward(&mut self) {
         let known = self.known();
         let mut next = Node {
-            shape: TurnShape::STOP,
             cap: 0.0,
-            upper: 0.0,
-            witness: 0.0,
+            ..Node::new(TurnShape::STOP, 0.0)
         };
         for index in (1..=known).rev() {
             let node = self.nodes[index];
-            let (upper, witness) = reachable(&node, &next, &self.links[index]);
-            if upper > node.upper * (1.0 + SEARCH_PRECISION) {
-                self.nodes[index].upper = upper;
-                self.nodes[index].witness = witness;
-            } else if index <= self.passed {
-                break;
+            if !node.cruises {
+                let (upper, witness) = reachable(&node, &next, &self.links[index]);
+                if upper > node.upper * (1.0 + SEARCH_PRECISION) {
+                    self.nodes[index].upper = upper;
+                    self.nodes[index].witness = witness;
+                } else if index <= self.passed {
+                    break;
+                }
             }
             next = self.nodes[index];
+            // What is before a node whose bound will not change has found its own.
+            if next.is_final() {
+                self.settled = self.settled.max(index);
+            }
         }
         self.passed = known;
     }
@@ -201,16 +237,15 @@ impl Window {
         self.nodes.pop_front();
         self.links.pop_front();
         self.passed -= 1;
+        self.settled = self.settled.saturating_sub(1);
         let share = if next.upper > 0.0 {
             scale / next.upper
         } else {
             0.0
         };
         self.nodes[0] = Node {
-            shape,
-            cap: 1.0,
-            upper: 1.0,
             witness: next.witness * share,
+            ..Node::new(shape, 1.0)
         };
         shape
     }

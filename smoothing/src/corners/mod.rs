@@ -4,6 +4,7 @@
 //! corner, the lattice chooses among them, and the chosen ones are unrolled into pieces when they are
 //! asked for. Not here: any formula.
 
+mod division;
 mod offer;
 mod unroll;
 
@@ -15,6 +16,8 @@ use crate::pieces::{MOST_PIECES, corner_between};
 use crate::select::Selection;
 use crate::turn::TurnShape;
 use crate::window::{Link, Window};
+use division::division_of;
+pub(crate) use division::room_beside;
 use offer::overlapping_of;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
@@ -23,8 +26,11 @@ use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 #[derive(Clone, Debug)]
 pub(crate) struct Corners<const N: usize> {
     merger: Merger<N>,
-    /// The last leg, whose end is still open.
+    /// The last leg, or part of one, whose end is still open, and the length of the whole.
     pending: Option<Leg<N>>,
+    whole: f64,
+    /// Whether the plan has been divided since it began.
+    cruises: bool,
     selections: Vec<Selection<N>>,
     windows: Vec<Window>,
     scaled: Vec<VecDeque<TurnShape>>,
@@ -57,6 +63,8 @@ impl<const N: usize> Corners<N> {
         Self {
             merger: Merger::new(start, settings.limits, share_of(settings.method)),
             pending: None,
+            whole: 0.0,
+            cruises: false,
             scaled: windows
                 .iter()
                 .map(|_| VecDeque::with_capacity(burst + 2 * size + 4))
@@ -90,6 +98,7 @@ impl<const N: usize> Corners<N> {
     fn restart_after(&mut self, start: Vector<N>, shape: TurnShape) {
         self.merger.restart(start);
         self.pending = None;
+        self.cruises = false;
         for (window, scaled) in self.windows.iter_mut().zip(&mut self.scaled) {
             window.restart_after(shape);
             scaled.clear();
@@ -108,8 +117,13 @@ impl<const N: usize> Corners<N> {
 
     /// Takes the next vertex.
     pub(crate) fn push(&mut self, vertex: Vertex<N>) {
+        // What goes on from where the motion cruises goes straight on.
+        let goes_on = self.is_cruising() && !self.merger.has_begun();
         if let Some(leg) = self.merger.push(vertex) {
             self.take_leg(leg);
+        }
+        if goes_on {
+            self.part();
         }
     }
 
@@ -165,10 +179,31 @@ impl<const N: usize> Corners<N> {
         }
     }
 
-    /// Ends the motion on the last leg, cruising at a distance from its start, instead of at rest at its
-    /// end; from rest at its start there must be room to reach the speed.
-    pub(crate) fn close_cruising(&mut self, distance: f64, speed: f64) {
+    /// Divides the plan where the path has come to, on a leg that is long enough before and behind it to be left at
+    /// its velocity.
+    pub(crate) fn part_cruising(&mut self) {
         self.part();
+        self.divide();
+    }
+
+    /// Takes the vertices of one more leg and ends the motion on it, cruising at a distance from its start, instead
+    /// of at rest at its end; from rest at its start there must be room to reach the speed.
+    pub(crate) fn close_cruising(
+        &mut self,
+        vertices: impl Iterator<Item = Vertex<N>>,
+        distance: f64,
+        speed: f64,
+    ) {
+        self.part();
+        // Its start counts, so it is not divided.
+        for vertex in vertices {
+            if let Some(leg) = self.merger.push(vertex) {
+                self.join(leg, leg.length);
+            }
+        }
+        if let Some(leg) = self.merger.flush() {
+            self.join(leg, leg.length);
+        }
         for window in &mut self.windows {
             window.finish();
         }
@@ -188,6 +223,7 @@ impl<const N: usize> Corners<N> {
     /// Ends the motion at the end of a leg.
     fn end(&mut self, leg: Leg<N>, shape: TurnShape) {
         let link = link_of(&leg);
+        self.cruises = false;
         self.legs.push_back(leg);
         self.lattice.push(&link, &[shape], &[], |_, _, _| None);
         self.offered += 1;
@@ -196,13 +232,20 @@ impl<const N: usize> Corners<N> {
 
     /// Whether there is motion that has not been closed.
     pub(crate) fn has_begun(&self) -> bool {
-        self.pending.is_some() || self.merger.has_begun()
+        self.pending.is_some() || self.merger.has_begun() || self.is_cruising()
+    }
+
+    /// Whether all motion is planned to where it cruises, in the middle of a leg.
+    pub(crate) fn is_cruising(&self) -> bool {
+        self.pending.is_none() && self.cruises
     }
 
     /// Becomes a copy of another, without the motion that waits to be pulled.
     pub(crate) fn follow(&mut self, other: &Self) {
         self.merger.follow(&other.merger);
         self.pending = other.pending;
+        self.whole = other.whole;
+        self.cruises = other.cruises;
         for (window, others) in self.windows.iter_mut().zip(&other.windows) {
             window.follow(others);
         }
@@ -247,7 +290,22 @@ impl<const N: usize> Corners<N> {
 
     /// Takes a leg, which completes the corner at its start.
     fn take_leg(&mut self, leg: Leg<N>) {
+        let whole = leg.length;
+        match division_of(&leg, &self.limits) {
+            Some(distance) => {
+                let (first, second) = leg.divided(distance);
+                self.join(first, whole);
+                self.divide();
+                self.join(second, whole);
+            }
+            None => self.join(leg, whole),
+        }
+    }
+
+    /// Takes a leg, or a part of one of some length.
+    fn join(&mut self, leg: Leg<N>, whole: f64) {
         let link = link_of(&leg);
+        let before = std::mem::replace(&mut self.whole, whole);
         match self.pending.replace(leg) {
             None => {
                 for window in &mut self.windows {
@@ -260,13 +318,28 @@ impl<const N: usize> Corners<N> {
                     let shape = if last.stop {
                         TurnShape::STOP
                     } else {
-                        selection.shape(&corner, last.length, leg.length)
+                        selection.shape(&corner, before, whole)
                     };
                     window.push(shape, link);
                 }
                 self.legs.push_back(last);
                 self.offer();
             }
+        }
+    }
+
+    /// The last leg, the first part of a long one, is left at its velocity, so that all before it is decided.
+    fn divide(&mut self) {
+        if let Some(leg) = self.pending.take() {
+            for window in &mut self.windows {
+                window.divide(leg.limits.velocity);
+            }
+            self.legs.push_back(Leg {
+                cruises: true,
+                ..leg
+            });
+            self.cruises = true;
+            self.offer();
         }
     }
 }

@@ -38,16 +38,17 @@ impl<const N: usize> Corners<N> {
                 }
             }
             let next = self.legs.get(self.offered + 1).or(self.pending.as_ref());
+            let fixed = leg.stop || leg.cruises;
             if leg.stop {
                 count = 0;
             }
-            if self.stops_allowed || leg.stop {
+            if (self.stops_allowed && !leg.cruises) || leg.stop {
                 candidates[count] = TurnShape::STOP;
                 count += 1;
             }
             let safe = count;
             if let (Some(selection), Some(next)) = (self.selections.first(), next)
-                && !(leg.stop || self.overlapping.is_empty())
+                && !(fixed || self.overlapping.is_empty())
             {
                 let corner = corner_between(leg, next, corner_tolerance(leg, next));
                 if let Some(shape) = selection.unscaled(&corner) {

@@ -57,12 +57,16 @@ impl Column {
             .unwrap_or_else(|| self.cheapest())
     }
 
-    /// Gives up what lies too far behind the cheapest safe one, given the time in which that could stop
-    /// on a move like the last; never the stop, without which no bound on the whole would hold.
+    /// Gives up what lies too far behind the cheapest safe one, given the time in which the
+    /// fastest could stop on a move like the last; never the stop, without which no bound on the whole would hold.
     pub(super) fn give_up(&mut self, link: &Link) {
         let cheapest = self.cheapest();
         let least = self.costs[cheapest];
-        let speed = self.shapes[cheapest].exit.speed;
+        let speed = (0..self.count)
+            .filter(|&candidate| self.costs[candidate].is_finite())
+            .fold(0.0_f64, |most, candidate| {
+                most.max(self.shapes[candidate].exit.speed)
+            });
         let most = least + STOPS_BEHIND * link.limits.time_to_change(speed);
         for candidate in 0..self.count {
             if self.costs[candidate] > most && !self.shapes[candidate].is_stop() {

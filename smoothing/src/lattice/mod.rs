@@ -15,8 +15,11 @@ use column::Column;
 pub(crate) use column::MOST_CANDIDATES;
 use std::collections::VecDeque;
 
-/// Corners between two attempts to commit.
+/// Most corners between two attempts to commit, each of which looks at all that wait.
 const PATIENCE: usize = 16;
+
+/// An attempt to commit waits until so many times as many corners at the most wait as are new.
+const ATTEMPTS: usize = 4;
 
 /// The motion chosen for a corner.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +72,7 @@ impl Lattice {
         first.costs[0] = 0.0;
         self.columns.push_back(first);
         self.chosen.clear();
-        self.wait = PATIENCE.min(self.size);
+        self.wait = 1;
         self.finished = false;
         self.last = None;
         self.spent = 0.0;
@@ -120,9 +123,11 @@ impl Lattice {
         self.last = Some(*link);
         self.columns.push_back(column);
         self.wait = self.wait.saturating_sub(1);
-        if self.wait == 0 || self.columns.len() > self.size {
+        // A single candidate is on every way.
+        let settles = self.columns.back().is_some_and(|last| last.count == 1);
+        if self.wait == 0 || settles || self.columns.len() > self.size {
             self.commit();
-            self.wait = PATIENCE.min(self.size);
+            self.wait = (self.columns.len() / ATTEMPTS).clamp(1, PATIENCE);
         }
     }
 

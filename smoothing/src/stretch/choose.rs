@@ -11,7 +11,7 @@ use crate::leg::Leg;
 use crate::merge::Vertex;
 
 /// Fewest legs of a stretch worth trying with superposed corners.
-const FEWEST_LEGS: usize = 4;
+pub(super) const FEWEST_LEGS: usize = 4;
 
 /// How much faster than the plan by corners a stretch at the feedrate would have to be.
 const WORTH_TRYING: f64 = 0.97;
@@ -88,21 +88,35 @@ impl<const N: usize> Stretches<N> {
         if certain {
             return Choice::Corners(material);
         }
-        self.trial.follow(&self.corners);
-        let resting = self.trial.time_to_rest([]);
-        let (choice, apart) = match choice {
-            Choice::Corners(_) => (Choice::Afresh, resting + least),
-            Choice::Superposed(_) => match self.plan_entering(legs) {
-                Some((entry, duration)) => (Choice::Superposed(Some(entry)), duration),
-                None => (choice, resting + least),
-            },
-            _ => (choice, resting + least),
+        let entering = match choice {
+            Choice::Superposed(_) => self.plan_entering(legs),
+            _ => None,
+        };
+        let (choice, apart) = match (entering, choice) {
+            (Some((entry, duration)), _) => (Choice::Superposed(Some(entry)), duration),
+            _ if self.corners.is_cruising() => (Choice::Afresh, self.resting_behind(legs)),
+            (None, Choice::Corners(_)) => (Choice::Afresh, self.resting() + least),
+            (None, choice) => (choice, self.resting() + least),
         };
         if going_on <= apart {
             Choice::Corners(material)
         } else {
             choice
         }
+    }
+
+    /// Time to rest before a stretch.
+    fn resting(&mut self) -> f64 {
+        self.trial.follow(&self.corners);
+        self.trial.time_to_rest([])
+    }
+
+    /// The same to rest behind its first leg, in the middle of which the motion cruises, and then through the others.
+    fn resting_behind(&mut self, legs: &[Leg<N>]) -> f64 {
+        let (lead, others) = legs.split_at(1.min(legs.len()));
+        self.trial.follow(&self.corners);
+        let resting = self.trial.time_to_rest(self.vertices.of(lead));
+        resting + self.choose(others).1
     }
 
     /// How a stretch is travelled fastest from rest to rest, and its duration. With superposed corners it
@@ -209,7 +223,7 @@ impl<const N: usize> Stretches<N> {
     }
 }
 
-fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
+pub(super) fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
     Vertex {
         point: leg.end,
         bulge: leg.deviation,

@@ -5,6 +5,7 @@
 //! rest, and the fastest counts. Not here: the plans.
 
 mod choose;
+mod divide;
 mod travel;
 mod vertices;
 
@@ -14,7 +15,7 @@ use crate::merge::{MOST_MERGED, Merger, Vertex};
 use crate::method::Settings;
 use crate::superposed::Superposer;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Pause, Piece, Tolerance, Vector};
+use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 use vertices::Vertices;
 
 /// Share of the tolerance that cleaning the path may use: enough for rounding of programs and for the
@@ -41,6 +42,7 @@ const STOPS_AHEAD: f64 = 8.0;
 /// Plans stretch by stretch.
 #[derive(Clone, Debug)]
 pub(crate) struct Stretches<const N: usize> {
+    limits: Limits<N>,
     merger: Merger<N>,
     vertices: Vertices<N>,
     /// Within an arc, the number of the first vertex after it.
@@ -78,6 +80,7 @@ enum Event<const N: usize> {
 impl<const N: usize> Stretches<N> {
     pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
+            limits: settings.limits,
             merger: Merger::new(start, settings.limits, FINE_SHARE),
             vertices: Vertices::with_capacity(MOST_VERTICES + LONGEST_ARC + 2 * MOST_MERGED),
             arc: None,
@@ -255,6 +258,7 @@ impl<const N: usize> Stretches<N> {
                 return;
             }
         }
+        let leg = self.divide(leg);
         self.ahead += stops_within(&leg);
         self.legs.push(leg);
     }

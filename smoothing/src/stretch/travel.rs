@@ -5,17 +5,18 @@
 //! known path is reached at rest sooner that way than by a rest before it. Not here: plans from rest to
 //! rest.
 
-use super::choose::Choice;
+use super::choose::{Choice, Material};
 use super::{Cause, Event, MOST_LEGS, SHARP, Stretches};
-use crate::corners::Corners;
 use crate::leg::Leg;
-use crate::merge::Vertex;
 use toolglide_kinematics::Tangential;
 use toolglide_kinematics::numeric::LENGTH_SLACK;
 use toolglide_profiles::Rise;
 
 /// Share of the velocity of a leg at which superposed corners are entered on it.
 const ENTERING: f64 = 0.995;
+
+/// Length of the time steps with which they begin there, as a share of the time in which the jerk gives the speed.
+const STEPS_IN: f64 = 2.0;
 
 /// Where superposed corners are entered on the first leg of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,17 +25,26 @@ pub(super) struct Entry {
     speed: f64,
 }
 
-/// Ends corners under way on the first leg of a stretch, whose vertices these are.
-fn enter<const N: usize>(
-    corners: &mut Corners<N>,
-    vertices: impl Iterator<Item = Vertex<N>>,
-    entry: Entry,
-) {
-    corners.part();
-    for vertex in vertices {
-        corners.push(vertex);
-    }
-    corners.close_cruising(entry.distance, entry.speed);
+/// Speed at which superposed corners are entered on a leg, the rise from rest to it, and the distance from which
+/// that is possible.
+fn entering_on<const N: usize>(first: &Leg<N>) -> (f64, Rise, f64) {
+    let speed = ENTERING * first.limits.velocity;
+    let Tangential {
+        acceleration, jerk, ..
+    } = first.limits;
+    // The corner before it ends within its reach, and from whatever speed the rise is no longer.
+    let least = (0.5 * acceleration * acceleration / jerk).min(speed);
+    let rise = Rise::to_peak(0.0, 0.0, speed, acceleration, jerk);
+    let distance = (0.5 * (speed + least) * (speed + least) / acceleration
+        + 4.0 * first.tolerance.length() / SHARP)
+        .max(rise.distance * (1.0 + LENGTH_SLACK));
+    (speed, rise, distance)
+}
+
+/// Length of a leg on which superposed corners are entered.
+pub(super) fn way_in<const N: usize>(first: &Leg<N>) -> f64 {
+    let (speed, _, distance) = entering_on(first);
+    distance + STEPS_IN * speed * (speed / first.limits.jerk).sqrt()
 }
 
 impl<const N: usize> Stretches<N> {
@@ -48,14 +58,25 @@ impl<const N: usize> Stretches<N> {
             }
             Choice::Superposed(entry) => {
                 match entry {
-                    Some(entry) => enter(&mut self.corners, self.vertices.of(&legs[..1]), entry),
+                    Some(entry) => self.corners.close_cruising(
+                        self.vertices.of(&legs[..1]),
+                        entry.distance,
+                        entry.speed,
+                    ),
                     None => self.corners.close(),
                 }
                 self.travel(legs, cause);
             }
             Choice::Afresh => {
+                // In the middle of a leg nothing rests.
+                let lead = usize::from(self.corners.is_cruising()).min(legs.len());
+                self.turn(&legs[..lead], Material::Vertices);
+                if let Some(last) = legs[..lead].last() {
+                    self.end = last.end;
+                }
                 self.come_to_rest();
-                self.put_back(legs, 0);
+                self.put_back(legs, lead);
+                legs.clear();
             }
             Choice::Apart => {
                 self.come_to_rest();
@@ -107,22 +128,19 @@ impl<const N: usize> Stretches<N> {
         if self.has_arc(&legs[..1]) {
             return None;
         }
-        let speed = ENTERING * first.limits.velocity;
-        let Tangential {
-            acceleration, jerk, ..
-        } = first.limits;
-        // The corner before it ends within its reach, and from whatever speed the rise is no longer.
-        let least = (0.5 * acceleration * acceleration / jerk).min(speed);
-        let rise = Rise::to_peak(0.0, 0.0, speed, acceleration, jerk);
-        let distance = (0.5 * (speed + least) * (speed + least) / acceleration
-            + 4.0 * first.tolerance.length() / SHARP)
-            .max(rise.distance * (1.0 + LENGTH_SLACK));
+        let (speed, rise, distance) = entering_on(first);
         let before = rise.duration() + (distance - rise.distance) / speed;
-        let most = self.superposer.planned() - before;
+        // Where the motion cruises already there is no rest to be compared with.
+        let most = if self.corners.is_cruising() {
+            self.superposer.planned()
+        } else {
+            self.superposer.planned() - before
+        };
         let duration = self.superposer.plan_entering(legs, distance, speed, most)?;
         let entry = Entry { distance, speed };
         self.trial.follow(&self.corners);
-        enter(&mut self.trial, self.vertices.of(&legs[..1]), entry);
+        self.trial
+            .close_cruising(self.vertices.of(&legs[..1]), distance, speed);
         Some((entry, self.trial.duration() + duration))
     }
 

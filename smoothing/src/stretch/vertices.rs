@@ -32,6 +32,14 @@ impl<const N: usize> Vertices<N> {
         self.first + self.queue.len() as u64
     }
 
+    /// Puts a vertex in the place of the one of a number.
+    pub(super) fn replace(&mut self, number: u64, vertex: Vertex<N>) {
+        let place = self.place(number);
+        if let Some(kept) = self.queue.get_mut(place) {
+            *kept = vertex;
+        }
+    }
+
     /// The vertices of consecutive legs.
     pub(super) fn of(&self, legs: &[Leg<N>]) -> Copied<Iter<'_, Vertex<N>>> {
         let range = match legs {
