@@ -418,6 +418,8 @@ impl Lowering {
         match index {
             0 => Some(stored(5161)),
             1 => Some(stored(5181)),
+            // Where nobody said where they are, they are where the others are then.
+            _ if self.references.is_empty() => Some([0.0; 6]),
             _ => self.references.get(index).copied(),
         }
     }

@@ -7,7 +7,7 @@ use crate::block::{Block, O_WORDS};
 use crate::codes::{Group, Subprogram};
 use crate::control::o_word;
 use crate::error::{Fault, ProgramError, Remark, Warning};
-use crate::fanuc::Fanuc;
+use crate::fanuc::{Fanuc, explained};
 use crate::flow::Flow;
 use crate::lexer::check_text;
 use crate::lines::LONGEST_LINE;
@@ -159,12 +159,10 @@ impl<R: BufRead> Program<R> {
         }
         self.lowering.line = self.flow.line();
         let text = &self.flow.text()[..end];
-        self.block.read(
-            text,
-            &self.lowering,
-            &self.lowering.settings,
-            &mut self.remarks,
-        )?;
+        let (state, remarks) = (&self.lowering, &mut self.remarks);
+        self.block
+            .read(text, state, &state.settings, remarks)
+            .map_err(|fault| explained(fault, text))?;
         self.carry_out()
     }
 

@@ -86,6 +86,10 @@ impl<R: BufRead> Program<R> {
             let function = "a given parameter";
             return Err(ArithmeticError::Overflow { function });
         }
+        let number = name.trim_start_matches('#').parse();
+        if let (Some(fanuc), Ok(number)) = (&mut self.fanuc, number) {
+            return fanuc.give(number, value, &mut self.lowering);
+        }
         self.lowering.give_parameter(name, value)
     }
 

@@ -320,7 +320,14 @@ fn axes_go_to_their_reference_points_by_way_of_a_point() {
         [1.0, 2.0, 50.0],
     ];
     assert_close(&found, &expected.concat(), "way");
-    refuses("G30 P3 Z0", 1, "reference point");
+    let missing = toolglide_program::Program::new("G30 P3 Z0\n".as_bytes(), "a.nc", settings)
+        .in_language(toolglide_program::Language::Fanuc)
+        .with_reference_points(&[[1.0; 6]]);
+    let refused = missing.filter_map(Result::err).next().unwrap();
+    assert!(
+        refused.to_string().contains("without this reference point"),
+        "{refused}"
+    );
     refuses("G68 X0 Y0 R10.\nG28 Z0", 2, "turned");
 }
 
@@ -469,6 +476,33 @@ fn the_next_program_of_a_file_ends_the_first() {
 }
 
 #[test]
+fn rotary_axes_go_home_with_a_move_of_their_own() {
+    let text = "G0 X1. A30.\nG91 G28 A0\nG90 X2.\n";
+    let settings = common::settings();
+    let poses = toolglide_program::Poses::new(
+        text.as_bytes(),
+        "a.nc",
+        settings,
+        toolglide_program::Language::Fanuc,
+    )
+    .with_reference_points(&[[0.0, 0.0, 0.0, 90.0, 0.0, 0.0]]);
+    let turned: Vec<f64> = poses
+        .map(|step| match step.unwrap().end() {
+            toolglide_kinematics::PoseEnd::Axes { rotary, .. } => rotary[0].to_degrees(),
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_close(&turned, &[30.0, 90.0, 90.0], "A");
+}
+
+#[test]
+fn a_plain_program_is_the_same_for_linuxcnc() {
+    let text = "G21 G90 G17\nG0 X5. Y5. Z2.\nG1 Z-1. F100.\nG2 X15. Y5. I5. J0\nG3 X20. R4.\nG1 Y10.\nG61 X0\nG64 Y0\n\
+                G20 X1. F10.\nG19 G3 Y1. Z0 R1.\nG55 G0 X0\nG4 P0\nM30\n";
+    assert_eq!(moves(text), common::read(text));
+}
+
+#[test]
 fn rotary_words_need_their_axis() {
     let (line, _, word, reason) = refusal("G1 X10. Y5. A45. F500");
     assert_eq!((line, word.as_str()), (1, "A45."), "place");
@@ -476,5 +510,9 @@ fn rotary_words_need_their_axis() {
         matches!(reason, Reason::NoSuchAxis { letter: 'A', .. }),
         "{reason}"
     );
-    refuses("G28 G91 A0", 1, "no axis A");
+    refuses("G28 G91 A5", 1, "no axis A");
+    assert_ends(
+        "G0 X1. A0.\nG28 G91 X0 A0.\n",
+        &[[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    );
 }

@@ -231,6 +231,17 @@ fn variables_of_the_control_tell_what_is_known() {
 }
 
 #[test]
+fn variables_may_be_given_before_the_program_begins() {
+    let given = program("G0 X#500 Y[#1*2.]\n")
+        .with_parameter("#500", 7.0)
+        .and_then(|program| program.with_parameter("1", 3.0));
+    let moves: Vec<_> = given.unwrap().map(Result::unwrap).collect();
+    let end = moves[0].end(toolglide_kinematics::Vector::zeros());
+    assert_close(end.as_slice(), &[7.0, 6.0, 0.0], "given");
+    assert!(program("").with_parameter("3000", 1.0).is_err(), "alarm");
+}
+
+#[test]
 fn an_alarm_ends_the_program_with_its_text() {
     let text = "G0 X1.\nIF [#1 EQ #0] THEN #3000=21 (NO RADIUS)\nX2.\n";
     let (line, column, _, reason) = refusal(text);

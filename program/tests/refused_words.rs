@@ -187,3 +187,20 @@ fn a_dwell_needs_its_time() {
         Reason::WordMissing { letter: 'P', .. }
     );
 }
+
+#[test]
+fn statements_of_macros_are_refused_as_what_they_are() {
+    for (line, column) in [
+        ("WHILE [#1 LT 2] DO1", 1),
+        ("N10 IF [#1 EQ 2] GOTO 20", 5),
+        ("GOTO 10", 1),
+        ("END1", 1),
+    ] {
+        let (_, found, _, reason) = refusal(line);
+        assert_eq!(found, column, "{line}");
+        assert!(
+            reason.to_string().contains("--dialect fanuc"),
+            "{line}: {reason}"
+        );
+    }
+}

@@ -37,6 +37,7 @@ impl Fanuc {
         if frame.without_shift() != Frame::NONE {
             return refuse("while the program is mirrored, scaled or turned");
         }
+        let turned = program.lowering.others.at;
         self.named_rotary(words, program)?;
         let here = program.lowering.program;
         let point = Self::point(words, program)?;
@@ -81,6 +82,11 @@ impl Fanuc {
                     }
                 }
                 let end = state.offsets.in_program(there);
+                // Rotary axes turn with a move, even if it leads nowhere.
+                if end == here && program.waiting.is_empty() && state.others.at != turned {
+                    let waiting = &mut program.waiting;
+                    return state.go(end, Feedrate::RAPID, taken.span, waiting);
+                }
                 Self::rapid(end, taken, program)
             }
         }
@@ -96,6 +102,10 @@ impl Fanuc {
             let Some(word) = word(words, letter) else {
                 continue;
             };
+            if !program.block.rotary && word.value == 0.0 {
+                // Where the axis is not, it is at 0.
+                continue;
+            }
             if !program.block.rotary {
                 let reason = program.block.no_axis(char::from(letter));
                 return Err(Fault::new(word.span, reason));

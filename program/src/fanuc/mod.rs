@@ -35,7 +35,7 @@ use crate::fanuc::words::Word;
 use std::collections::{BTreeMap, BTreeSet};
 use toolglide_kinematics::Vector;
 
-pub(crate) use crate::fanuc::signs::looks_like;
+pub(crate) use crate::fanuc::signs::{explained, looks_like};
 
 /// What a program has said that blocks of RS274/NGC cannot hold.
 #[derive(Debug)]

@@ -5,8 +5,11 @@
 //! program 1001 is in the file. What both have, such as `#1=` and `M98 P1000`, is no sign.
 
 use crate::code::Code;
+use crate::error::Fault;
 use crate::fanuc::labels::{blanks, block_number, program_number, stands_loop};
 use crate::number::number;
+use crate::place::Span;
+use crate::reason::Reason;
 use std::collections::BTreeSet;
 
 /// Codes of FANUC or Haas alone, in tenths, with a letter that must stand in their block.
@@ -64,6 +67,21 @@ pub(crate) fn looks_like(beginning: &[u8]) -> bool {
     calls.iter().any(|&number| {
         number > 9999 && !numbers.contains(&number) && numbers.contains(&(number % 10_000))
     })
+}
+
+/// A refusal of a line, or what reads it where it is a statement of macro B.
+pub(crate) fn explained(fault: Fault, line: &[u8]) -> Fault {
+    let unread = matches!(
+        fault.reason,
+        Reason::NumberMissing { .. } | Reason::BadCharacter { .. }
+    );
+    if unread && has_sign(line, &mut Vec::new()) {
+        let what = "statements of macros; --dialect fanuc reads them";
+        let start = blanks(line, block_number(line).map_or(0, |(_, end)| end));
+        let span = Span::new(start, line.len());
+        return Fault::new(span, Reason::SyntaxNotSupported { what });
+    }
+    fault
 }
 
 fn has_sign(line: &[u8], calls: &mut Vec<u32>) -> bool {

@@ -225,6 +225,21 @@ impl Fanuc {
         }
     }
 
+    /// Gives a variable its value before the program begins.
+    pub(crate) fn give(
+        &mut self,
+        variable: u32,
+        value: f64,
+        state: &mut crate::lower::Lowering,
+    ) -> Result<(), ArithmeticError> {
+        match self.memory.set(variable, value, state)? {
+            Written::Alarm | Written::Stop => {
+                Err(ArithmeticError::NotWritable { number: variable })
+            }
+            Written::Done | Written::Noted(_) => Ok(()),
+        }
+    }
+
     /// Says once that a word is of no effect on the motion.
     pub(crate) fn note<R: BufRead>(
         &mut self,
