@@ -1,4 +1,4 @@
-//! Statements of cutter location files that are not read: what is silent, what is told, what is refused.
+//! Sorts statements of cutter location files that are not read into silent ones, noted ones and refused ones.
 //!
 //! Source: ISO 4343 (APT) and the files that NX, Creo, CATIA and others write. Not here: statements that are read.
 

@@ -120,6 +120,7 @@ mod sinumerik_frame;
 mod sinumerik_line;
 mod sinumerik_reader;
 mod sinumerik_value;
+mod sinumerik_ways;
 mod sinumerik_words;
 mod splines;
 mod state;

@@ -5,24 +5,21 @@
 //! here: jumps, conditions and loops, see `sinumerik_flow`, and cycles, which are refused by name.
 
 use crate::block::Block;
-use crate::codes::{PathControl, Way};
+use crate::codes::PathControl;
 use crate::error::{Fault, Notice, Remark};
 use crate::lexer::Word;
 use crate::lower::Lowering;
-use crate::machining_error::MachiningError;
 use crate::place::Span;
 use crate::reason::Reason;
 use crate::settings::Settings;
 use crate::sinumerik_codes::is_foreign;
 use crate::sinumerik_frame::FrameWord;
 use crate::sinumerik_reader::Reader;
+use crate::sinumerik_ways::{extended_address, no_way};
 use crate::sinumerik_words::{Known, known};
 use crate::tools::ToolTable;
 use std::collections::BTreeMap;
 use toolglide_kinematics::{Tolerance, ToolpathError};
-
-/// Largest place of a rotary axis that goes there a certain way, degrees.
-const WHOLE_TURN: f64 = 360.0;
 
 /// Tools whose names are remembered.
 const MOST_TOOLS: usize = 1000;
@@ -36,7 +33,7 @@ pub(crate) struct Sinumerik {
 
 /// A line being read.
 pub(crate) struct Line<'a> {
-    block: &'a mut Block,
+    pub(crate) block: &'a mut Block,
     pub(crate) state: &'a mut Lowering,
     remarks: &'a mut Vec<Remark>,
     pub(crate) frame: Option<(FrameWord, Span)>,
@@ -176,38 +173,6 @@ impl Line<'_> {
         }
     }
 
-    /// A word that may say which way its number is meant.
-    fn add_by_way(
-        &mut self,
-        letter: u8,
-        value: f64,
-        way: Option<Way>,
-        span: Span,
-    ) -> Result<(), Fault> {
-        let Some(way) = way else {
-            return self.add(letter, value, span);
-        };
-        let takes = match way {
-            Way::Absolute | Way::Incremental => b"XYZABCIJK@^".contains(&letter),
-            Way::Shortest | Way::Positive | Way::Negative => b"ABC".contains(&letter),
-        };
-        let name = match letter {
-            b'@' => "RP".to_owned(),
-            b'^' => "AP".to_owned(),
-            _ => char::from(letter).to_string(),
-        };
-        if !takes || self.frame.is_some() {
-            return Err(no_way(&name, span));
-        }
-        let turns = !matches!(way, Way::Absolute | Way::Incremental);
-        if turns && !(0.0..=WHOLE_TURN).contains(&value) {
-            let reason = MachiningError::OutsideTurn { value };
-            return Err(Fault::new(span, reason.into()));
-        }
-        self.block.set_way(letter, way);
-        self.add(letter, value, span)
-    }
-
     /// A word of several letters.
     fn word(&mut self, reader: &mut Reader<'_>, name: &str, start: usize) -> Result<(), Fault> {
         let span = Span::new(start, reader.at);
@@ -330,25 +295,6 @@ impl Line<'_> {
         }
         Ok(())
     }
-}
-
-/// A refusal of `AC( )` and its like on a word that does not take it.
-fn no_way(word: &str, span: Span) -> Fault {
-    let word = word.into();
-    let what = "AC( ) and IC( ) are for X Y Z A B C I J K RP AP, DC( ) ACP( ) ACN( ) for A B C";
-    Fault::new(span, Reason::WordNotSupported { word, what })
-}
-
-/// A refusal of an address with a number of its own, as in `A3=`.
-fn extended_address(word: &str, span: Span) -> Fault {
-    let what = match word {
-        "A3=" | "B3=" | "C3=" | "A2=" | "B2=" | "C2=" | "A4=" | "B4=" | "C4=" | "A5=" | "B5="
-        | "C5=" => "orientations by vectors and angles",
-        "I1=" | "J1=" | "K1=" => "arcs by a point on them",
-        _ => "addresses of several channels, axes and spindles",
-    };
-    let word = word.into();
-    Fault::new(span, Reason::WordNotSupported { word, what })
 }
 
 pub(crate) fn unknown(word: &str, span: Span) -> Fault {

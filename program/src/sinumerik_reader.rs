@@ -138,13 +138,32 @@ impl<'a> Reader<'a> {
             return self.way_value(state);
         }
         match self.plain_number() {
-            Some(value) if value.is_finite() => Ok((value, None)),
+            Some(value) if value.is_finite() => {
+                self.refuse_exponent(start)?;
+                Ok((value, None))
+            }
             _ => {
                 let letter = self.line.get(start).map_or('?', |&byte| char::from(byte));
                 let span = Span::new(start, start + 1);
                 Err(Fault::new(span, Reason::NumberMissing { letter }))
             }
         }
+    }
+
+    /// Refuses a number that goes on as `e-12` does: exponents are written with `EX`.
+    fn refuse_exponent(&self, start: usize) -> Result<(), Fault> {
+        let [b'e' | b'E', rest @ ..] = self.rest() else {
+            return Ok(());
+        };
+        let signed = length(rest, |byte| matches!(byte, b'+' | b'-')).min(1);
+        let digits = length(&rest[signed..], |byte| byte.is_ascii_digit());
+        if digits == 0 {
+            return Ok(());
+        }
+        let letter = self.line.get(start).map_or('?', |&byte| char::from(byte));
+        let span = Span::new(start, self.at + 1 + signed + digits);
+        let letter = letter.to_ascii_uppercase();
+        Err(Fault::new(span, Reason::Exponent { letter }))
     }
 
     /// An expression, or one within a way.

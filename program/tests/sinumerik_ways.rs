@@ -165,6 +165,12 @@ fn exponents_are_those_of_sinumerik() {
     ] {
         assert!(try_poses(text).is_err(), "{text}");
     }
+    let refused = try_poses("G90 G1 X2.35e-12 F100").unwrap_err();
+    assert_eq!(
+        (refused.column(), refused.word()),
+        (8, "X2.35e-12"),
+        "place"
+    );
 }
 
 #[test]
