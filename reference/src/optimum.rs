@@ -12,6 +12,7 @@ use crate::formulation::Kind;
 use crate::grid::{Grid, share};
 use crate::motion::{Least, least_time};
 use crate::pieces::pieces;
+use crate::score::Held;
 use crate::straight::{Straight, along};
 use toolglide_kinematics::{Plan, Trajectory};
 
@@ -100,7 +101,8 @@ impl<const N: usize> Optimum<N> {
     }
 
     /// How long the motion lasts, s: a bound from above on the least time. On a single leg it is the
-    /// closed form, where that is shorter than what was solved.
+    /// closed form, where that is shorter than what was solved; where motions were held against it, the fastest of
+    /// those, where that is shorter.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.plan.duration()
@@ -117,6 +119,18 @@ impl<const N: usize> Optimum<N> {
     #[must_use]
     pub fn lower_bound(&self) -> f64 {
         self.lower_bound
+    }
+
+    /// Another motion that is allowed and faster takes its place. What is known from below is then the bound at the
+    /// shares of that motion.
+    pub(crate) fn give_way_to(&mut self, motion: &Plan<N>, held: &Held) {
+        self.plan = motion.clone();
+        self.times.clone_from(&held.leg_times);
+        self.sampled = self.sampled.min(held.duration);
+        self.lower_bound = held
+            .lower_bound
+            .unwrap_or(self.lower_bound)
+            .min(held.duration);
     }
 
     /// How long the motion spends on each leg, s.

@@ -60,14 +60,17 @@ pub fn corner_penalty_ratio(optimum: f64, duration: f64, straight_time: f64) -> 
 }
 
 /// Finds the optimum of a course and holds motions against it. The search starts from the fastest
-/// of them, so that no motion has an advantage that the optimum could not find. `done` is called after the
-/// optimum and after each motion.
+/// of them, so that no motion has an advantage that the optimum could not find, and where the fastest of those
+/// that are `legal` is faster still, on a finer grid of time, it is the optimum: no legal motion scores above 1.
+/// `legal` says of each motion whether it keeps limits and tolerance. `done` is called after the optimum and after
+/// each motion.
 ///
 /// # Errors
 /// As [`optimum()`](optimum()).
 pub fn hold<const N: usize>(
     course: &Course<N>,
     motions: &[Plan<N>],
+    legal: &[bool],
     settings: &Settings,
     done: &mut dyn FnMut(),
 ) -> Result<Score<N>, ReferenceError> {
@@ -86,9 +89,9 @@ pub fn hold<const N: usize>(
     if course.legs() <= TWO_STARTS || starts.is_empty() {
         starts.push(course.stopping_times());
     }
-    let optimum = optimum(course, &starts, settings)?;
+    let mut optimum = optimum(course, &starts, settings)?;
     done();
-    let motions = motions
+    let held: Vec<Held> = motions
         .iter()
         .zip(times)
         .map(|(motion, leg_times)| {
@@ -101,9 +104,14 @@ pub fn hold<const N: usize>(
             held
         })
         .collect();
+    for ((motion, held), legal) in motions.iter().zip(&held).zip(legal) {
+        if *legal && held.duration < optimum.duration() {
+            optimum.give_way_to(motion, held);
+        }
+    }
     Ok(Score {
         optimum,
-        motions,
+        motions: held,
         straight_time: course.straight_time(),
     })
 }
