@@ -64,6 +64,8 @@ pub struct WindowTally {
     pub stretches: u64,
     /// Those that are travelled by another method, which is faster there.
     pub yielded: u64,
+    /// What all windows cost: intervals times steps of their solver.
+    pub work: u64,
 }
 
 /// Why a planner cannot take a move.
@@ -82,6 +84,12 @@ pub enum PlanError {
     #[error("move {index}: it comes after the end of the path")]
     Finished {
         /// The move, counted from 0.
+        index: u32,
+    },
+    /// No motion was found: lengths or limits are beyond what float arithmetic can carry.
+    #[error("move {index}: no motion was found for lengths and limits of this size")]
+    Magnitude {
+        /// The move that was to be taken, counted from 0; the one that could not be planned came before.
         index: u32,
     },
     /// More moves than can be counted.

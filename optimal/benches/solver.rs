@@ -8,7 +8,9 @@ use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use toolglide_kinematics::{Limits, Vector};
-use toolglide_optimal::{EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver};
+use toolglide_optimal::{
+    Budget, EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
+};
 
 /// Linearised problems allowed for a window.
 const EFFORT: usize = 8;
@@ -71,7 +73,7 @@ fn measure<const N: usize>(criterion: &mut Criterion, name: &str, segments: &[Se
         motion.states.clear();
         motion.jerks.clear();
         solver
-            .solve(black_box(&window), &mut motion, EFFORT)
+            .solve(black_box(&window), &mut motion, &mut Budget::solves(EFFORT))
             .unwrap()
     };
     let solved = solve();

@@ -9,6 +9,7 @@
 //! Source: sequential convex programming; the linearisation in the durations is our own. Not here:
 //! how one problem is solved, see [`interior`](crate::interior).
 
+use crate::budget::Budget;
 use crate::interior::{Ending, Goal, Interior, Precision};
 use crate::problem::{Problem, count};
 use crate::spline::State;
@@ -76,6 +77,11 @@ const SMOOTHING: f64 = 1e-3;
 /// A shortening that stalled may still be used below this gap and miss.
 const USABLE: f64 = 1e-2;
 
+/// Steps of the interior-point method that one problem is expected to take at the most, and those that preparing
+/// it costs as much as.
+const EXPECTED: u64 = 20;
+const PREPARING: u32 = 2;
+
 /// A restoration that stalled may still be used below this miss.
 const USABLE_MISS: f64 = 1e-6;
 
@@ -88,7 +94,7 @@ const USABLE_MISS: f64 = 1e-6;
 /// ```
 /// use toolglide_kinematics::{Limits, Vector};
 /// use toolglide_optimal::{
-///     EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
+///     Budget, EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -116,7 +122,7 @@ const USABLE_MISS: f64 = 1e-6;
 ///     durations: vec![0.16, 0.16],
 ///     ..WindowMotion::new()
 /// };
-/// let solved = SequentialSolver::new().solve(&window, &mut motion, 8)?;
+/// let solved = SequentialSolver::new().solve(&window, &mut motion, &mut Budget::solves(8))?;
 /// assert!(solved.duration < 0.288);
 /// assert_eq!(motion.jerks.len(), 80);
 /// # Ok(())
@@ -131,6 +137,7 @@ pub struct SequentialSolver<const N: usize> {
     best: Base<N>,
     best_durations: Vec<f64>,
     best_duration: Option<f64>,
+    budget: Budget,
     solves: u32,
     iterations: u32,
 }
@@ -227,6 +234,15 @@ impl<const N: usize> SequentialSolver<N> {
     /// Solves one problem from the base, which it replaces where it can be used.
     fn run(&mut self, goal: Goal, trust: f64, precision: &Precision) -> bool {
         let steps = self.problem.steps();
+        let restoring = matches!(goal, Goal::Restore { .. });
+        // What is shortened must be restored.
+        let kept = if restoring { 0 } else { EXPECTED };
+        let left = self.budget.steps(steps).saturating_sub(kept);
+        let most = u32::try_from(left).unwrap_or(u32::MAX);
+        let most = most.saturating_sub(PREPARING);
+        if most == 0 {
+            return false;
+        }
         self.base.states[0] = *self.problem.start();
         self.base.states[steps] = *self.problem.end();
         self.interior.states.clone_from(&self.base.states);
@@ -234,12 +250,14 @@ impl<const N: usize> SequentialSolver<N> {
         self.interior.trust.clear();
         self.interior.trust.resize(self.problem.segments(), trust);
         self.problem.set_durations(&self.durations);
-        let restoring = matches!(goal, Goal::Restore { .. });
         let base = (self.base.states.as_slice(), self.base.jerks.as_slice());
         self.problem.set_base((!restoring).then_some(base));
-        let outcome = self.interior.solve(&mut self.problem, goal, precision);
+        let outcome = self
+            .interior
+            .solve(&mut self.problem, goal, precision, most);
         self.solves += 1;
         self.iterations += outcome.iterations;
+        self.budget.spend(steps, outcome.iterations + PREPARING);
         let used = match outcome.ending {
             Ending::Solved => true,
             _ if restoring => outcome.miss < USABLE_MISS,
@@ -284,11 +302,20 @@ impl<const N: usize> SequentialSolver<N> {
         Some(excess)
     }
 
+    /// Whether there is enough left for so many problems.
+    fn affords(&self, problems: u64) -> bool {
+        self.budget.steps(self.problem.steps()) >= EXPECTED * problems
+    }
+
     /// Shortens and restores until nothing is gained; gives the least excess of the restored.
-    fn improve(&mut self, effort: usize) -> f64 {
+    fn improve(&mut self) -> f64 {
         let (mut trust, mut gap) = (FIRST_TRUST, LARGEST_GAP);
         let mut least = f64::INFINITY;
+        let effort = self.budget.solves;
         for round in 1..=effort {
+            if !self.affords(1) {
+                break;
+            }
             let Some(promise) = self.shorten(trust, EXCESS_WEIGHT, gap) else {
                 trust *= 0.25;
                 if trust < LEAST_TRUST {
@@ -298,8 +325,8 @@ impl<const N: usize> SequentialSolver<N> {
             };
             gap = (GAP_SHARE * promise.gain.abs()).clamp(SHORTENED.gap, LARGEST_GAP);
             let settled = promise.gain.abs() < LEAST_GAIN;
-            if (settled && promise.excess < ENOUGH) || round % RESTORE_EVERY == 0 || round == effort
-            {
+            let last = round == effort || !self.affords(2);
+            if (settled && promise.excess < ENOUGH) || round % RESTORE_EVERY == 0 || last {
                 let excess = self.restore().unwrap_or(f64::INFINITY);
                 least = least.min(excess);
                 if excess > ENOUGH {
@@ -323,10 +350,20 @@ impl<const N: usize> WindowSolver<N> for SequentialSolver<N> {
         &mut self,
         window: &Window<'_, N>,
         motion: &mut WindowMotion<N>,
-        effort: usize,
+        budget: &mut Budget,
     ) -> Result<Solved, Unsolved> {
         self.load(window, motion)?;
-        let mut excess = self.improve(effort);
+        self.budget = *budget;
+        let found = self.find(motion);
+        budget.work = self.budget.work;
+        found
+    }
+}
+
+impl<const N: usize> SequentialSolver<N> {
+    /// Finds a motion through the window that has been loaded.
+    fn find(&mut self, motion: &mut WindowMotion<N>) -> Result<Solved, Unsolved> {
+        let mut excess = self.improve();
         let mut trust = REPAIR_TRUST;
         for _ in 0..REPAIRS {
             if self.best_duration.is_some() {

@@ -14,6 +14,8 @@ pub(crate) enum Event<const N: usize> {
     Rest(u32),
     /// The motion passes the middle of a long move.
     Joint(Joint<N>),
+    /// No motion was found up to the next rest: lengths or limits are beyond float arithmetic.
+    Lost,
 }
 
 /// A place on the line of a move that is passed at its feedrate, without acceleration.

@@ -5,18 +5,21 @@
 //! something new, and ends at rest, or where the middle of a long move begins: that is travelled in
 //! closed form, and the next window starts behind it. A motion takes the place of the plan only when it
 //! has been accepted and is not worse; else the plan stays as it is, the motion comes to its stop, and goes on
-//! from rest. Not here: one window, see [`attempt`].
+//! from rest. A stretch whose windows cost more than its motion earns is given up: the plan before is carried out, and
+//! every line up to the next goal is travelled from rest to rest. Not here: one window, see [`attempt`].
 
 mod attempt;
+mod travel;
 
-use crate::event::{Event, Joint};
+use crate::budget::{Budget, Credit};
+use crate::event::Event;
 use crate::guess::Guess;
-use crate::safe::{self, Line};
+use crate::safe;
 use crate::settings::Settings;
-use crate::span::{Cruise, Span, steps, weakest};
+use crate::span::{Span, weakest};
 use crate::window::{EndState, Segment, WindowMotion, WindowSolver};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector, WindowTally};
+use toolglide_kinematics::{Limits, Vector, WindowTally};
 
 /// What is handed out of a window, in times to stop.
 const COMMIT: f64 = 4.0;
@@ -75,6 +78,13 @@ pub(crate) struct Horizon<S, const N: usize> {
     ratios: Vec<f64>,
     events: VecDeque<Event<N>>,
     tally: WindowTally,
+    credit: Credit,
+    /// What the window under way may still cost.
+    budget: Budget,
+    /// Whether the stretch up to the next goal is given up: its windows cost more than its motion earns.
+    given_up: bool,
+    /// Whether the motion is being executed, so that nothing is given up.
+    leading: bool,
 }
 
 fn motion_for<const N: usize>() -> WindowMotion<N> {
@@ -113,6 +123,10 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             ratios: Vec::with_capacity(MOST_SPANS),
             events: VecDeque::with_capacity(2 * MOST_STEPS),
             tally: WindowTally::default(),
+            credit: Credit::new(N),
+            budget: Budget::default(),
+            given_up: false,
+            leading: false,
         }
     }
 
@@ -131,62 +145,22 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.close(EndState::rest(end));
     }
 
-    /// The last span leads to the middle of a long move, on which motion needs no planning.
-    pub(crate) fn cruise(&mut self, cruise: &Cruise<N>) {
-        let Cruise {
-            direction, speed, ..
-        } = *cruise;
-        let at = |position| EndState {
-            velocity: direction * speed,
-            ..EndState::rest(position)
-        };
-        self.close(at(cruise.start));
-        // Where no window led to it, the motion rests here.
-        let entry = if self.moves() { speed } else { 0.0 };
-        let line = Line {
-            start: cruise.start,
-            end: cruise.end,
-            direction,
-            limits: cruise.limits,
-            serves: cruise.serves,
-        };
-        let travelled = line.travel([entry, speed], |piece| self.pass(&piece, cruise));
-        debug_assert!(travelled, "it is longer than it takes to gain its speed");
-        self.start = at(cruise.end);
-    }
-
-    /// Hands out a piece of the middle of a long move, with a joint where that is at the feedrate.
-    fn pass(&mut self, piece: &Piece<N>, cruise: &Cruise<N>) {
-        let start = piece.at(0.0);
-        let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
-        let Serves { first, last } = cruise.serves;
-        if !steady || first != last {
-            self.events.push_back(Event::Piece(*piece));
-            return;
-        }
-        let half = 0.5 * piece.duration();
-        let joint = Joint {
-            index: first,
-            position: piece.position_at(half),
-            velocity: start.velocity,
-        };
-        let rest = Sample {
-            position: joint.position,
-            ..start
-        };
-        let halves = [
-            Piece::new(&start, half, joint.position, cruise.serves),
-            Piece::new(&rest, half, piece.end(), cruise.serves),
-        ];
-        self.events.push_back(Event::Piece(halves[0]));
-        self.events.push_back(Event::Joint(joint));
-        self.events.push_back(Event::Piece(halves[1]));
-    }
-
     fn close(&mut self, goal: EndState<N>) {
         self.goal = Some(goal);
         while self.advance() {}
         self.goal = None;
+        self.given_up = false;
+    }
+
+    /// Whether the motion is being executed before its end is known: nothing is given up then, whatever it costs.
+    pub(crate) fn lead(&mut self, leading: bool) {
+        self.leading = leading;
+        self.given_up &= !leading;
+    }
+
+    /// Whether its windows have cost nearly all that motion has earned.
+    pub(crate) fn is_short(&self) -> bool {
+        self.credit.is_short()
     }
 
     /// Whether motion was handed out up to a state that is not one of rest.
@@ -205,9 +179,12 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.events.pop_front()
     }
 
-    /// How many windows there were.
+    /// How many windows there were, and what they cost.
     pub(crate) fn tally(&self) -> WindowTally {
-        self.tally
+        WindowTally {
+            work: self.credit.spent(),
+            ..self.tally
+        }
     }
 
     /// Plans a window and hands out its first part; `false` when nothing can be done yet. Where there is
@@ -216,6 +193,10 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         let known = self.spans.len();
         if known == 0 {
             return false;
+        }
+        if self.given_up {
+            self.carry_out();
+            return true;
         }
         let closing = self.goal.is_some();
         let speed = self.start.velocity.norm();
@@ -254,13 +235,18 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             self.commit(part);
         } else {
             self.tally.kept += 1;
-            if self.planned > 0 {
-                self.commit(self.planned);
-            } else {
-                self.travel_a_line();
-            }
+            self.carry_out();
         }
         true
+    }
+
+    /// Hands out the plan there is to its stop; where there is none, the next line.
+    fn carry_out(&mut self) {
+        if self.planned > 0 {
+            self.commit(self.planned);
+        } else {
+            self.travel_a_line();
+        }
     }
 
     /// How many spans take some times to stop, and whether there are as many.
@@ -308,60 +294,5 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             Some(goal) if count == self.spans.len() => goal,
             _ => EndState::rest(self.spans[count - 1].end),
         }
-    }
-
-    /// Hands out the plan of the first `count` spans.
-    fn commit(&mut self, count: usize) {
-        let mut node = 0;
-        for (span, duration) in self.spans.drain(..count).zip(&self.current.durations) {
-            let interval = duration / steps(span.steps);
-            for _ in 0..span.steps {
-                let state = &self.current.states[node];
-                let start = Sample {
-                    position: state.position,
-                    velocity: state.velocity,
-                    acceleration: state.acceleration,
-                    jerk: self.current.jerks[node],
-                };
-                node += 1;
-                let end = self.current.states[node].position;
-                let piece = Piece::new(&start, interval, end, span.serves);
-                self.events.push_back(Event::Piece(piece));
-            }
-        }
-        self.start = self.current.states[node];
-        self.planned -= count;
-        self.current.durations.drain(..count);
-        self.expected.drain(..count);
-        self.current.states.drain(..node);
-        self.current.jerks.drain(..node);
-        if self.planned == 0 {
-            self.current.states.clear();
-        }
-    }
-
-    /// Travels the next straight line to its end: to the goal if that is there, else to a stop.
-    fn travel_a_line(&mut self) {
-        let count = safe::on_one_line(self.spans.iter());
-        let (Some(first), Some(last)) = (self.spans.front(), self.spans.get(count - 1)) else {
-            return;
-        };
-        let line = Line::of(first, last);
-        let entry = self.start.velocity.norm();
-        let goal = self.end(count);
-        let exit = goal.velocity.norm();
-        let mut end = goal;
-        if !line.travel([entry, exit], |piece| {
-            self.events.push_back(Event::Piece(piece))
-        }) {
-            end = EndState::rest(line.end);
-            let travelled = line.travel([entry, 0.0], |piece| {
-                self.events.push_back(Event::Piece(piece))
-            });
-            debug_assert!(travelled, "a line can be travelled to a stop");
-        }
-        self.start = end;
-        self.spans.drain(..count);
-        self.expected.clear();
     }
 }

@@ -139,13 +139,15 @@ impl<const N: usize> Interior<N> {
         self.stretch_changes.reserve(segments);
     }
 
-    /// Solves a problem from the states and jerks at hand.
+    /// Solves a problem from the states and jerks at hand, in at most so many iterations.
     pub(crate) fn solve(
         &mut self,
         problem: &mut Problem<N>,
         goal: Goal,
         precision: &Precision,
+        most: u32,
     ) -> Outcome {
+        let most = most.min(MOST_ITERATIONS);
         let degree = problem.degree();
         let unit = degree / ROWS_PER_UNIT;
         self.prepare(problem);
@@ -185,7 +187,7 @@ impl<const N: usize> Interior<N> {
             } else {
                 stalled += 1;
             }
-            if stalled > MOST_STALLED || outcome.iterations == MOST_ITERATIONS {
+            if stalled > MOST_STALLED || outcome.iterations == most {
                 return outcome;
             }
             outcome.iterations += 1;

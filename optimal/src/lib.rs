@@ -6,6 +6,7 @@
 
 mod accept;
 mod block;
+mod budget;
 mod chords;
 mod cone;
 mod durations;
@@ -26,6 +27,7 @@ mod spline;
 mod stream;
 mod window;
 
+pub use budget::Budget;
 pub use durations::SequentialSolver;
 pub use planner::{TimeOptimal, plan, plan_with};
 pub use settings::{Effort, Settings};

@@ -68,7 +68,12 @@ fn time_to_stop<const N: usize>(limits: &Limits<N>) -> f64 {
 impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
         let index = self.intake.take(next)?;
-        let next = if self.race.wants_stop() {
+        if self.race.is_broken() {
+            return Err(PlanError::Magnitude { index });
+        }
+        let leads = self.race.leads();
+        self.optimal.lead(leads);
+        let next = if self.race.wants_stop() || leads && self.optimal.is_short() {
             next.with_exact_stop()
         } else {
             *next
@@ -83,6 +88,10 @@ impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> 
 
     fn finish(&mut self) -> Result<(), PlanError> {
         if self.intake.close() {
+            if self.race.is_broken() {
+                let index = self.intake.count();
+                return Err(PlanError::Magnitude { index });
+            }
             self.smoothing.finish()?;
             self.optimal.finish();
             self.race.end_at(self.intake.count().saturating_sub(1));

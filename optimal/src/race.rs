@@ -50,6 +50,9 @@ pub(crate) struct Race<const N: usize> {
     /// Who travels the stretch under way, once that is settled, and to where, once that is known.
     lane: Option<Lane>,
     bound: Option<Bound>,
+    /// Whether one of two motions is missing in this stretch, and in one that was led by it.
+    lost: bool,
+    broken: bool,
     /// Events of this stretch that have been looked at, and how long they last, s.
     walked: usize,
     walked_time: f64,
@@ -72,6 +75,8 @@ impl<const N: usize> Race<N> {
             ends: VecDeque::with_capacity(MOST_HELD),
             lane: None,
             bound: None,
+            lost: false,
+            broken: false,
             walked: 0,
             walked_time: 0.0,
             lead: 0.0,
@@ -102,12 +107,19 @@ impl<const N: usize> Race<N> {
         (self.mine.len(), self.theirs.len())
     }
 
+    /// Whether the motion that leads a stretch came to a place behind which there is none.
+    pub(crate) fn is_broken(&self) -> bool {
+        self.broken
+    }
+
     /// Whether the lead of a stretch that is led is nearly used up, so that it had better end.
     pub(crate) fn wants_stop(&self) -> bool {
-        self.lane == Some(Lane::Mine)
-            && self.bound.is_none()
-            && self.mine.len() == self.walked
-            && self.lead < self.reserve
+        self.leads() && self.mine.len() == self.walked && self.lead < self.reserve
+    }
+
+    /// Whether the motion is handed out before the end of its stretch is known.
+    pub(crate) fn leads(&self) -> bool {
+        self.lane == Some(Lane::Mine) && self.bound.is_none()
     }
 
     /// Takes what both have ready, as far as there is room for it.
@@ -133,6 +145,9 @@ impl<const N: usize> Race<N> {
         loop {
             self.join_stretches();
             self.settle();
+            if self.broken {
+                return None;
+            }
             match (self.lane?, self.bound) {
                 (Lane::Mine, Some(bound)) => {
                     if bound.events == 0 {
@@ -185,6 +200,7 @@ impl<const N: usize> Race<N> {
             self.ends.pop_front();
         }
         (self.lane, self.bound, self.lead) = (None, None, 0.0);
+        self.lost = false;
         (self.walked, self.walked_time) = (0, 0.0);
     }
 
@@ -209,7 +225,7 @@ impl<const N: usize> Race<N> {
             let moved = bound.pieces > 0;
             let lane = self.lane.unwrap_or_else(|| {
                 self.stretches += u64::from(moved);
-                if self.walked_time < theirs - TIME_SLACK || !moved {
+                if !self.lost && (self.walked_time < theirs - TIME_SLACK || !moved) {
                     return Lane::Mine;
                 }
                 // A line alone is the same for both.
@@ -224,7 +240,7 @@ impl<const N: usize> Race<N> {
         } else if self.lane.is_none()
             && (self.mine.len() >= MOST_HELD || self.theirs.len() >= MOST_HELD)
         {
-            let ahead = self.ahead() > self.reserve;
+            let ahead = !self.lost && self.ahead() > self.reserve;
             self.stretches += 1;
             self.yielded += u64::from(!ahead);
             self.lane = Some(if ahead { Lane::Mine } else { Lane::Theirs });
@@ -238,6 +254,10 @@ impl<const N: usize> Race<N> {
             let events = self.walked + 1;
             match *event {
                 Event::Piece(piece) => self.walked_time += piece.duration(),
+                Event::Lost => {
+                    self.broken |= self.lane == Some(Lane::Mine);
+                    self.lost = true;
+                }
                 Event::Joint(joint) => match self.place(&joint) {
                     Place::After(pieces) => {
                         return Some(Bound {

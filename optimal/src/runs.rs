@@ -197,6 +197,9 @@ impl<const N: usize> Joiner<N> {
         }
         let span = vertex.point - self.anchor;
         let length = span.norm();
+        if !length.is_finite() {
+            return None;
+        }
         let direction = if length > 0.0 { span / length } else { span };
         let (mut furthest, mut back, mut reached) = (0.0_f64, 0.0_f64, 0.0_f64);
         for member in &self.members {

@@ -20,15 +20,17 @@ pub(crate) const MOST_STEPS: usize = 60;
 /// Most intervals of a span that is travelled at constant speed.
 const STEADY_STEPS: usize = 6;
 
-/// Shortest middle of a long move that is not planned in windows, as a multiple of the interval.
-const CRUISE_STEPS: f64 = 30.0;
+/// Shortest middle of a long move that is not planned in windows, as a multiple of the distance to stop: it is
+/// entered a little below its feedrate, gains that, and keeps it for a while.
+const MIDDLE: f64 = 0.1;
 
 /// Share of the feedrate at which such a middle is entered and left: a little less than what a solver
 /// may use, so that a window can begin and end there.
 const CRUISE_SHARE: f64 = 1.0 - 4e-4;
 
-/// Room at the ends of a long move, as a multiple of the distance to stop.
-const END_ROOM: f64 = 1.25;
+/// Room at the ends of a long move, as a multiple of the distance to stop: as much as there is, between these. Ways
+/// around a corner that use all of the tolerance begin before the speed must change.
+const END_ROOM: [f64; 2] = [1.1, 2.0];
 
 /// A straight piece of path with what a window must know of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,9 +101,8 @@ pub(crate) fn cut<const N: usize>(
         ..
     } = line;
     let distance_to_stop = 0.5 * along.velocity * stop_time;
-    let room = END_ROOM * distance_to_stop;
-    let middle = run.length - 2.0 * room;
-    if middle <= distance_to_stop.max(along.velocity * interval * CRUISE_STEPS) {
+    let room = (0.5 * (run.length - MIDDLE * distance_to_stop)).min(END_ROOM[1] * distance_to_stop);
+    if room.is_nan() || room < END_ROOM[0] * distance_to_stop {
         let reach = along.reachable_within(run.length);
         let time = 2.0 * along.time_to_change(reach) + run.length / along.velocity;
         let least = along.velocity * interval * SPAN_STEPS;
@@ -117,7 +118,7 @@ pub(crate) fn cut<const N: usize>(
         take(line.part(run, share(count - 1), f64::INFINITY));
         return;
     }
-    let ends = parts(stop_time * END_ROOM, interval);
+    let ends = parts(stop_time * (room / distance_to_stop), interval);
     let share = |index| room * steps(index) / steps(ends);
     for index in 0..ends {
         take(line.part(run, share(index), share(index + 1)));
@@ -193,7 +194,13 @@ pub(crate) fn steps(count: usize) -> f64 {
     reason = "clamped to a small range"
 )]
 fn parts(time: f64, interval: f64) -> usize {
-    (time / (interval * SPAN_STEPS)).ceil().clamp(1.0, 1e3) as usize
+    let parts = (time / (interval * SPAN_STEPS)).ceil();
+    // Not even a number where lengths or limits are beyond float arithmetic.
+    if parts > 1.0 {
+        parts.min(1e3) as usize
+    } else {
+        1
+    }
 }
 
 impl<const N: usize> Span<N> {
@@ -222,8 +229,11 @@ impl<const N: usize> Span<N> {
     )]
     pub(crate) fn steps_for(&self, time: f64, steady: bool) -> usize {
         let most = if steady { STEADY_STEPS } else { MOST_STEPS };
-        (time / self.interval)
-            .ceil()
-            .clamp(steps(FEWEST_STEPS), steps(most)) as usize
+        let count = (time / self.interval).ceil();
+        if count > steps(FEWEST_STEPS) {
+            count.min(steps(most)) as usize
+        } else {
+            FEWEST_STEPS
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! Source: the receding horizon over which time optimality is sought; the motion is one of constant
 //! jerk per interval, as in section 2.2. Not here: how windows follow one another, and any solver.
 
+use crate::budget::Budget;
 use thiserror::Error;
 use toolglide_kinematics::{Limits, Vector};
 
@@ -165,7 +166,7 @@ pub enum Unsolved {
     /// What was asked is no window.
     #[error("the window cannot be solved: {0}")]
     Window(#[from] WindowDefect),
-    /// No motion inside limits and tolerance was found within the effort.
+    /// No motion inside limits and tolerance was found within the budget.
     #[error("after {solves} solves the motion still exceeds a bound by the share {excess}")]
     NotConverged {
         /// Convex problems solved.
@@ -183,7 +184,7 @@ pub enum Unsolved {
 
 /// Finds a fast motion through a window, starting from a guess.
 pub trait WindowSolver<const N: usize> {
-    /// Finds a motion with at most `effort` linearised problems.
+    /// Finds a motion within a budget, and takes away from it what it has done.
     ///
     /// `motion` holds the guess on entry: durations always; states and jerks all or none, and they
     /// need not fit each other. It holds the answer on success.
@@ -194,7 +195,7 @@ pub trait WindowSolver<const N: usize> {
         &mut self,
         window: &Window<'_, N>,
         motion: &mut WindowMotion<N>,
-        effort: usize,
+        budget: &mut Budget,
     ) -> Result<Solved, Unsolved>;
 }
 

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use toolglide_kinematics::{Limits, Vector};
-use toolglide_optimal::{EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver};
+use toolglide_optimal::{
+    Budget, EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
+};
 
 /// A share of a bound that the solver may take for nothing.
 const ENOUGH: f64 = 1e-4;
@@ -23,7 +25,7 @@ impl Program {
         self.with_window(|window| {
             let mut motion = self.guess();
             let solved = SequentialSolver::new()
-                .solve(window, &mut motion, 8)
+                .solve(window, &mut motion, &mut Budget::solves(8))
                 .unwrap();
             check(window, &motion);
             solved.duration
@@ -193,12 +195,12 @@ fn a_solver_used_before_gives_the_same_bits_and_allocates_nothing() {
     let mut solver = SequentialSolver::new();
     let mut first = program.guess();
     program
-        .with_window(|window| solver.solve(window, &mut first, 8))
+        .with_window(|window| solver.solve(window, &mut first, &mut Budget::solves(8)))
         .unwrap();
     let other = right_angle(0.05);
     let mut second = other.guess();
     other
-        .with_window(|window| solver.solve(window, &mut second, 8))
+        .with_window(|window| solver.solve(window, &mut second, &mut Budget::solves(8)))
         .unwrap();
     let mut again = first.clone();
     again.durations.clone_from(&program.durations);
@@ -206,7 +208,9 @@ fn a_solver_used_before_gives_the_same_bits_and_allocates_nothing() {
     again.jerks.clear();
     program.with_window(|window| {
         let counted = allocation_counter::measure(|| {
-            solver.solve(window, &mut again, 8).unwrap();
+            solver
+                .solve(window, &mut again, &mut Budget::solves(8))
+                .unwrap();
         });
         assert_eq!(counted.count_total, 0, "allocations");
     });

@@ -7,6 +7,7 @@
 
 use super::{Horizon, MARGIN};
 use crate::accept::accept;
+use crate::budget::Budget;
 use crate::safe;
 use crate::span::steps;
 use crate::window::{EndState, Segment, Window, WindowMotion, WindowSolver};
@@ -22,13 +23,33 @@ const FACTORS: (f64, f64) = (0.7, 1.6);
 /// anything more is a bad place to have been led to.
 const WORSE: f64 = 1.001;
 
+/// One part in so many of what is left for a window is kept for trying it again.
+const RETRY_SHARE: u64 = 3;
+
 /// How much slower than from rest to rest the guess of new spans is, on a grid of intervals.
 const STOPPING: f64 = 1.2;
 
 impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// Finds a plan for the first `count` spans that is accepted and no worse than the one there is;
     /// from rest, where there is none yet, also for fewer. Gives how many it covers.
-    pub(super) fn improve(&mut self, mut count: usize) -> Option<usize> {
+    pub(super) fn improve(&mut self, count: usize) -> Option<usize> {
+        self.cut_time(count);
+        let intervals = self.spans.range(..count).map(|span| span.steps).sum();
+        let Some(work) = self.credit.window(intervals, self.leading) else {
+            // The plan before comes to its stop; what it earns may do for another window.
+            self.given_up = self.planned == 0;
+            return None;
+        };
+        self.budget = Budget {
+            solves: self.solves,
+            work,
+        };
+        let found = self.improve_within_budget(count);
+        self.credit.pay(work - self.budget.work);
+        found
+    }
+
+    fn improve_within_budget(&mut self, mut count: usize) -> Option<usize> {
         // Motion that has just left the middle of a long move can stop at the end of its line.
         let fewest = if self.moves() {
             safe::on_one_line(self.spans.iter())
@@ -46,20 +67,28 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
     }
 
-    fn try_window(&mut self, count: usize) -> bool {
-        let speed = self.start.velocity.norm();
+    /// Cuts the time of the first `count` spans into intervals, where that has not been done.
+    fn cut_time(&mut self, count: usize) {
         let free = self.free.times.iter().zip(&self.free.steady);
         for (span, (duration, steady)) in self.spans.iter_mut().zip(free).take(count) {
             if span.steps == 0 {
                 span.steps = span.steps_for(*duration, *steady);
             }
         }
+    }
+
+    fn try_window(&mut self, count: usize) -> bool {
+        let speed = self.start.velocity.norm();
         let open = self.passes() && count == self.spans.len();
         self.guess
             .fill(self.spans.range(..count), speed, open, self.weakest);
         self.lay_segments(count);
         self.guess_motion(count);
+        // Something is left for another guess, or for fewer spans.
+        let kept = self.budget.work / RETRY_SHARE;
+        self.budget.work -= kept;
         let mut found = self.solve(count);
+        self.budget.work += kept;
         let retained: f64 = self.current.durations.iter().sum();
         let worse = found
             && self.planned > 0
@@ -207,7 +236,9 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             segments: &self.shrunk_segments,
             limits: &self.shrunk,
         };
-        let solved = self.solver.solve(&window, &mut self.candidate, self.solves);
+        let solved = self
+            .solver
+            .solve(&window, &mut self.candidate, &mut self.budget);
         if solved.is_err() {
             return false;
         }

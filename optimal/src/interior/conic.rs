@@ -85,7 +85,7 @@ fn compare<const N: usize>(
         interior.trust = vec![0.3; segments.len()];
         interior.states.clone_from(&states);
         interior.jerks.clone_from(&jerks);
-        let outcome = interior.solve(&mut problem, goal, &PRECISION);
+        let outcome = interior.solve(&mut problem, goal, &PRECISION, u32::MAX);
         // Rounding may end it a little earlier; then it is as good as that.
         prop_assert!(
             outcome.gap < LEAST_PRECISION && outcome.miss < LEAST_PRECISION,

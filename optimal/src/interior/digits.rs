@@ -72,7 +72,7 @@ fn solves<const N: usize>(
         interior.trust = vec![trust; segments.len()];
         interior.states.clone_from(&states);
         interior.jerks.clone_from(&jerks);
-        let outcome = interior.solve(&mut problem, goal, &FINE);
+        let outcome = interior.solve(&mut problem, goal, &FINE, u32::MAX);
         prop_assert_eq!(outcome.ending, Ending::Solved, "{:?}: {:?}", goal, outcome);
     }
     Ok(())

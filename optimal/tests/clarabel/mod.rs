@@ -10,7 +10,7 @@ use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 use toolglide_kinematics::Vector;
-use toolglide_optimal::{EndState, Solved, Unsolved, Window, WindowMotion, WindowSolver};
+use toolglide_optimal::{Budget, EndState, Solved, Unsolved, Window, WindowMotion, WindowSolver};
 
 /// Weight of a share by which limits are exceeded, against a share of the duration.
 const ELASTIC: f64 = 50.0;
@@ -300,12 +300,13 @@ impl<const N: usize> WindowSolver<N> for Conic {
         &mut self,
         window: &Window<'_, N>,
         motion: &mut WindowMotion<N>,
-        effort: usize,
+        budget: &mut Budget,
     ) -> Result<Solved, Unsolved> {
         let before = self.solves;
         let mut best: Option<WindowMotion<N>> = None;
         let mut base = motion.clone();
         let mut trust = 0.4;
+        let effort = budget.solves;
         for round in 0..effort {
             let Some(step) = self.program(window, &base, Some(trust)) else {
                 trust *= 0.25;

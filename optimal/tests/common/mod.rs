@@ -5,7 +5,7 @@
 use crate::clarabel::Conic;
 use toolglide_kinematics::{Limits, MotionPlanner, Plan, Toolpath, WindowTally};
 use toolglide_optimal::{
-    Settings, Solved, TimeOptimal, Unsolved, Window, WindowMotion, WindowSolver,
+    Budget, Settings, Solved, TimeOptimal, Unsolved, Window, WindowMotion, WindowSolver,
 };
 
 /// A solver that finds nothing, or nothing every few windows.
@@ -21,13 +21,13 @@ impl<const N: usize> WindowSolver<N> for Failing {
         &mut self,
         window: &Window<'_, N>,
         motion: &mut WindowMotion<N>,
-        effort: usize,
+        budget: &mut Budget,
     ) -> Result<Solved, Unsolved> {
         self.windows += 1;
         if self.windows.is_multiple_of(self.every) {
             return Err(Unsolved::Numerical { solves: 0 });
         }
-        self.conic.solve(window, motion, effort)
+        self.conic.solve(window, motion, budget)
     }
 }
 
