@@ -105,3 +105,27 @@ fn usual_arcs_are_planned_within_a_part_of_the_budget() {
 fn short_moves_in_all_directions_cost_no_more_than_they_earn() {
     holds(&scribble(300, 0.1));
 }
+
+#[test]
+fn three_long_moves_are_enough_for_motion_to_begin_and_it_stays_as_near_behind() {
+    let mut at = Vector::<3>::zeros();
+    let mut points = vec![at];
+    for index in 0..30 {
+        at[index % 2] += 50.0;
+        points.push(at);
+    }
+    let feedrate = Feedrate::new(100.0).unwrap();
+    let path = Toolpath::from_points(&points, feedrate, Tolerance::new(0.01).unwrap()).unwrap();
+    let mut planner = TimeOptimal::new(path.start(), &Settings::new(limits()));
+    for (index, step) in (0_u32..).zip(path.moves()) {
+        planner.push(step).unwrap();
+        let last = std::iter::from_fn(|| planner.pull()).last();
+        if index >= 2 {
+            let served = last.map(|piece| piece.serves().last);
+            assert!(
+                served.is_some_and(|last| last + 2 >= index),
+                "after move {index} motion has come to {served:?}"
+            );
+        }
+    }
+}
