@@ -17,6 +17,7 @@ mod overlap;
 mod pieces;
 mod planner;
 mod scale;
+mod section;
 mod select;
 mod stop_start;
 mod stretch;

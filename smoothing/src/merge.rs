@@ -31,6 +31,10 @@ const NEGLIGIBLE: f64 = 0.01;
 /// reached: twice what a stop and a start take.
 const LONG: f64 = 4.0;
 
+/// Share by which the feedrates of moves that are merged may differ, as inverse time and rounding make them: the
+/// lowest counts for all.
+const ALIKE: f64 = 1e-3;
+
 /// Most moves merged into one: bounds memory and the work a move. Where it cuts a straight line, there
 /// is a corner more than the tolerance asks for.
 pub(crate) const MOST_MERGED: usize = 1024;
@@ -48,6 +52,18 @@ pub(crate) struct Vertex<const N: usize> {
     pub(crate) next: u64,
 }
 
+/// The vertex at the end of a leg, which stands for all that the leg serves.
+pub(crate) fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
+    Vertex {
+        point: leg.end,
+        bulge: leg.deviation,
+        feedrate: leg.feedrate,
+        tolerance: leg.tolerance,
+        serves: leg.serves,
+        next: leg.vertices[1],
+    }
+}
+
 /// Merges vertices into legs.
 #[derive(Clone, Debug)]
 pub(crate) struct Merger<const N: usize> {
@@ -59,6 +75,8 @@ pub(crate) struct Merger<const N: usize> {
     bounds: Option<Bounds>,
     /// Largest distance of the run from its line.
     deviation: f64,
+    /// Time that its moves take from rest to rest; 0 while that has not been asked for.
+    apart: f64,
     carried: Option<Carried<N>>,
     /// Number of the first vertex that no leg has served.
     first: u64,
@@ -117,6 +135,7 @@ impl<const N: usize> Merger<N> {
             run: Vec::with_capacity(MOST_MERGED + 1),
             bounds: None,
             deviation: 0.0,
+            apart: 0.0,
             carried: None,
             first: 0,
         }
@@ -130,6 +149,7 @@ impl<const N: usize> Merger<N> {
         self.run.clone_from(&other.run);
         self.bounds = other.bounds;
         self.deviation = other.deviation;
+        self.apart = other.apart;
         self.carried = other.carried;
         self.first = other.first;
     }
@@ -140,6 +160,7 @@ impl<const N: usize> Merger<N> {
         self.run.clear();
         self.bounds = None;
         self.deviation = 0.0;
+        self.apart = 0.0;
         self.carried = None;
     }
 
@@ -165,6 +186,11 @@ impl<const N: usize> Merger<N> {
             Some(bounds) => bounds.with(&vertex),
             None => Bounds::of(&vertex),
         });
+        if self.apart > 0.0
+            && let Some(before) = self.run.last()
+        {
+            self.apart += self.time_between(&before.point, &vertex.point, vertex.feedrate);
+        }
         self.run.push(vertex);
         leg
     }
@@ -189,6 +215,7 @@ impl<const N: usize> Merger<N> {
         self.run.clear();
         self.bounds = None;
         self.deviation = 0.0;
+        self.apart = 0.0;
         if length <= SHORTEST_LENGTH {
             self.carry(&Vertex { tolerance, ..last }, serves, deviation);
             return None;
@@ -269,9 +296,12 @@ impl<const N: usize> Merger<N> {
     /// Whether moves would lose time if `vertex` were merged, because another of the run has a lower
     /// feedrate: all but those so short that they would not get up to it between two stops. `bounds` are
     /// those of the run and the vertex.
-    fn hurries(&self, vertex: &Vertex<N>, before: &Vertex<N>, bounds: &Bounds) -> bool {
+    fn hurries(&mut self, vertex: &Vertex<N>, before: &Vertex<N>, bounds: &Bounds) -> bool {
         let feedrate = bounds.slowest;
         if feedrate >= bounds.fastest {
+            return false;
+        }
+        if feedrate >= (1.0 - ALIKE) * bounds.fastest && self.saves(vertex, before, feedrate) {
             return false;
         }
         let mut hurried = 0.0;
@@ -308,17 +338,51 @@ impl<const N: usize> Merger<N> {
         length > LONG * speed * limits.time_to_change(speed)
     }
 
+    /// Whether the run with a vertex takes no longer at a feedrate, as one, than all its moves at their own, from
+    /// rest to rest.
+    fn saves(&mut self, vertex: &Vertex<N>, before: &Vertex<N>, feedrate: f64) -> bool {
+        if self.apart <= 0.0 {
+            let mut from = self.anchor;
+            for index in 0..self.run.len() {
+                let member = self.run[index];
+                self.apart += self.time_between(&from, &member.point, member.feedrate);
+                from = member.point;
+            }
+        }
+        let own = self.time_between(&before.point, &vertex.point, vertex.feedrate);
+        self.time_between(&self.anchor, &vertex.point, feedrate) <= self.apart + own
+    }
+
+    /// Time from rest to rest between two points.
+    fn time_between(&self, from: &Vector<N>, to: &Vector<N>, feedrate: f64) -> f64 {
+        let span = to - from;
+        let length = span.norm();
+        if length <= 0.0 {
+            return 0.0;
+        }
+        let limits = self.limits.along(&(span / length));
+        let ramp = limits.acceleration / limits.jerk;
+        let knee = limits.acceleration * ramp;
+        let mut speed = (0.25 * limits.jerk * length * length).cbrt();
+        if speed > knee {
+            let square = ramp * ramp + 4.0 * length / limits.acceleration;
+            speed = 0.5 * limits.acceleration * (square.sqrt() - ramp);
+        }
+        let speed = speed.min(limits.velocity).min(feedrate);
+        length / speed + limits.time_to_change(speed)
+    }
+
     /// Largest distance of the run from a line to `vertex`, or `None` when it cannot be merged.
-    fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
-        let (Some(before), Some(bounds)) = (self.run.last(), self.bounds) else {
+    fn deviation_with(&mut self, vertex: &Vertex<N>) -> Option<f64> {
+        let (Some(&before), Some(bounds)) = (self.run.last(), self.bounds) else {
             return Some(vertex.bulge);
         };
         if self.run.len() >= MOST_MERGED {
             return None;
         }
-        let run = (*before, bounds.slowest);
+        let run = (before, bounds.slowest);
         let bounds = bounds.with(vertex);
-        if self.hurries(vertex, before, &bounds) {
+        if self.hurries(vertex, &before, &bounds) {
             return None;
         }
         let budget = (self.share * bounds.tolerance.length() - bounds.bulge).max(0.0);

@@ -7,6 +7,7 @@ use crate::chords::Chords;
 use crate::corners::Corners;
 use crate::merge::Vertex;
 use crate::method::{Method, Settings};
+use crate::section::Sections;
 use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
     Arc, Intake, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath, Vector,
@@ -41,6 +42,7 @@ pub struct KinematicSmoothing<const N: usize> {
 enum Route<const N: usize> {
     Corners(Box<Corners<N>>),
     Stretches(Box<Stretches<N>>),
+    Sections(Box<Sections<N>>),
 }
 
 impl<const N: usize> KinematicSmoothing<N> {
@@ -52,9 +54,8 @@ impl<const N: usize> KinematicSmoothing<N> {
             stops: settings.method == Method::ExactStop,
             arc: None,
             route: match settings.method {
-                Method::Kcs | Method::ExactStop => {
-                    Route::Stretches(Box::new(Stretches::new(start, settings)))
-                }
+                Method::Kcs => Route::Sections(Box::new(Sections::new(start, settings))),
+                Method::ExactStop => Route::Stretches(Box::new(Stretches::new(start, settings))),
                 _ => Route::Corners(Box::new(Corners::new(start, settings, 1))),
             },
         }
@@ -109,6 +110,7 @@ impl<const N: usize> Route<N> {
         match self {
             Self::Corners(corners) => corners.push(vertex),
             Self::Stretches(stretches) => stretches.push(vertex),
+            Self::Sections(sections) => sections.push(vertex),
         }
     }
 
@@ -116,6 +118,7 @@ impl<const N: usize> Route<N> {
         match self {
             Self::Corners(corners) => corners.rest(),
             Self::Stretches(stretches) => stretches.rest(),
+            Self::Sections(sections) => sections.rest(),
         }
     }
 
@@ -123,28 +126,30 @@ impl<const N: usize> Route<N> {
     fn takes_alone(&self, chords: &Chords<N>) -> bool {
         match self {
             Self::Corners(_) => false,
-            Self::Stretches(_) => chords.count() > LONGEST_ARC as f64,
+            _ => chords.count() > LONGEST_ARC as f64,
         }
     }
 
     /// An arc begins, and may be taken with what is beside it.
     fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, index: u32) {
-        if let Self::Stretches(stretches) = self {
-            let mut chords =
-                Chords::new(*arc, crate::merge::MERGE_SHARE * step.tolerance().length());
-            let bulge = chords.bulge();
-            let points = std::iter::from_fn(|| chords.next());
-            stretches.begin_arc(
-                step.tolerance(),
-                points.map(|point| vertex_of(step, index, point, bulge)),
-            );
+        let tolerance = step.tolerance();
+        let mut chords = Chords::new(*arc, crate::merge::MERGE_SHARE * tolerance.length());
+        let bulge = chords.bulge();
+        let points = std::iter::from_fn(|| chords.next());
+        let vertices = points.map(|point| vertex_of(step, index, point, bulge));
+        match self {
+            Self::Corners(_) => {}
+            Self::Stretches(stretches) => stretches.begin_arc(tolerance, vertices),
+            Self::Sections(sections) => sections.begin_arc(tolerance, vertices),
         }
     }
 
     /// The arc has ended.
     fn end_arc(&mut self) {
-        if let Self::Stretches(stretches) = self {
-            stretches.end_arc();
+        match self {
+            Self::Corners(_) => {}
+            Self::Stretches(stretches) => stretches.end_arc(),
+            Self::Sections(sections) => sections.end_arc(),
         }
     }
 
@@ -152,6 +157,7 @@ impl<const N: usize> Route<N> {
         match self {
             Self::Corners(corners) => corners.dwell(pause),
             Self::Stretches(stretches) => stretches.dwell(pause),
+            Self::Sections(sections) => sections.dwell(pause),
         }
     }
 
@@ -159,6 +165,7 @@ impl<const N: usize> Route<N> {
         match self {
             Self::Corners(corners) => corners.close(),
             Self::Stretches(stretches) => stretches.close(),
+            Self::Sections(sections) => sections.close(),
         }
     }
 
@@ -166,6 +173,7 @@ impl<const N: usize> Route<N> {
         match self {
             Self::Corners(corners) => corners.pull(),
             Self::Stretches(stretches) => stretches.pull(),
+            Self::Sections(sections) => sections.pull(),
         }
     }
 
@@ -173,7 +181,7 @@ impl<const N: usize> Route<N> {
     fn chord_share(&self) -> f64 {
         match self {
             Self::Corners(_) => crate::merge::MERGE_SHARE,
-            Self::Stretches(_) => crate::stretch::FINE_SHARE,
+            _ => crate::stretch::FINE_SHARE,
         }
     }
 }

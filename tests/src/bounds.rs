@@ -22,3 +22,6 @@ pub const FEWEST_PLANS: u32 = 2_000;
 /// Longest planning of a course of some thirty moves: milliseconds are usual, and a search without
 /// bound once took minutes.
 pub const LONGEST_PLANNING: Duration = Duration::from_secs(1);
+
+/// A plan by `kcs` is no slower than by another method, or with less tolerance, but for this, relative.
+pub const SLOWER: f64 = 0.005;

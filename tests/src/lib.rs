@@ -11,6 +11,7 @@
 pub mod bounds;
 pub mod corpus;
 pub mod course;
+pub mod feeds;
 pub mod filtered;
 pub mod judged;
 pub mod run;

@@ -8,13 +8,13 @@ use super::Stretches;
 use super::travel::Entry;
 use crate::corners::Corners;
 use crate::leg::Leg;
-use crate::merge::Vertex;
+use crate::merge::vertex_of;
 
 /// Fewest legs of a stretch worth trying with superposed corners.
 pub(super) const FEWEST_LEGS: usize = 4;
 
 /// How much faster than the plan by corners a stretch at the feedrate would have to be.
-const WORTH_TRYING: f64 = 0.97;
+const WORTH_TRYING: f64 = 0.996;
 
 /// How a stretch is travelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,15 +39,15 @@ pub(super) enum Material {
 }
 
 /// What a stretch would take without corners.
-struct Ideal {
+pub(super) struct Ideal {
     /// The whole way at the feedrate.
-    at_feedrate: f64,
+    pub(super) at_feedrate: f64,
     /// Starting at one end and stopping at the other.
-    stop: f64,
+    pub(super) stop: f64,
 }
 
 impl Ideal {
-    fn of<const N: usize>(legs: &[Leg<N>]) -> Self {
+    pub(super) fn of<const N: usize>(legs: &[Leg<N>]) -> Self {
         let at_feedrate = legs
             .iter()
             .map(|leg| leg.length / leg.limits.velocity)
@@ -220,16 +220,5 @@ impl<const N: usize> Stretches<N> {
             Material::Vertices => vertices.of(legs).for_each(|vertex| corners.push(vertex)),
             Material::Legs => legs.iter().for_each(|leg| corners.push(vertex_of(leg))),
         }
-    }
-}
-
-pub(super) fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
-    Vertex {
-        point: leg.end,
-        bulge: leg.deviation,
-        feedrate: leg.feedrate,
-        tolerance: leg.tolerance,
-        serves: leg.serves,
-        next: leg.vertices[1],
     }
 }

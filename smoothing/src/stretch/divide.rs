@@ -5,11 +5,11 @@
 //! stretch: so a path of long legs is handed out leg by leg. Not here: how long that is.
 
 use super::Stretches;
-use super::choose::{FEWEST_LEGS, Material, vertex_of};
+use super::choose::{FEWEST_LEGS, Material};
 use super::travel::way_in;
 use crate::corners::room_beside;
 use crate::leg::Leg;
-use crate::merge::Vertex;
+use crate::merge::{Vertex, vertex_of};
 use toolglide_kinematics::numeric::LENGTH_SLACK;
 
 impl<const N: usize> Stretches<N> {

@@ -8,12 +8,13 @@ mod choose;
 mod divide;
 mod travel;
 mod vertices;
-
 use crate::corners::Corners;
+
 use crate::leg::Leg;
 use crate::merge::{MOST_MERGED, Merger, Vertex};
 use crate::method::Settings;
-use crate::superposed::Superposer;
+use crate::superposed::{Effort, Superposer};
+use choose::Ideal;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 use vertices::Vertices;
@@ -156,6 +157,33 @@ impl<const N: usize> Stretches<N> {
             None => pause,
         };
         self.take(Event::Dwell(pause));
+    }
+
+    /// Where the motion that has been pulled ends, at rest.
+    pub(crate) fn position(&self) -> Vector<N> {
+        self.merger.anchor()
+    }
+
+    /// Plans legs to where the motion has come to rest once more, superposed throughout, in less than `most`
+    /// seconds; the duration, and the effort that is left. All that has been
+    /// planned must have been pulled.
+    pub(crate) fn superpose_whole(
+        &mut self,
+        legs: &[Leg<N>],
+        most: f64,
+        effort: Effort,
+    ) -> (Option<f64>, usize) {
+        let ideal = Ideal::of(legs);
+        if ideal.at_feedrate + ideal.stop > most {
+            return (None, effort.ways + effort.pulses);
+        }
+        self.superposer
+            .plan_whole(legs, ideal.at_feedrate, most, effort)
+    }
+
+    /// What was planned last in this way is pulled next.
+    pub(crate) fn travel_whole(&mut self) {
+        self.superposer.travel();
     }
 
     /// The path ends.
@@ -313,7 +341,7 @@ enum Cause {
 }
 
 /// Length of a leg as a share of what a stop takes.
-fn stops_within<const N: usize>(leg: &Leg<N>) -> f64 {
+pub(crate) fn stops_within<const N: usize>(leg: &Leg<N>) -> f64 {
     let speed = leg.limits.velocity;
     leg.length / (0.5 * speed * leg.limits.time_to_change(speed))
 }

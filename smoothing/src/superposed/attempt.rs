@@ -36,6 +36,10 @@ impl<const N: usize> Superposer<N> {
             if !self.propose(filter, most, onward) {
                 return false;
             }
+            let Some(effort) = self.effort.checked_sub(self.spline.pieces()) else {
+                return false;
+            };
+            self.effort = effort;
             let mut kept = true;
             for index in 0..self.spline.pieces() {
                 if let Some(excess) = self.spline.excess(index, &self.curve, &self.limits) {
@@ -44,6 +48,9 @@ impl<const N: usize> Superposer<N> {
                     self.pace
                         .slow(controls[0].distance, controls[3].distance, &excess);
                 }
+            }
+            if kept && filter.averages() && !self.spline.passes_in_order(&self.curve) {
+                return false;
             }
             if kept {
                 self.spline.handover = self.pace.handover();
@@ -108,9 +115,14 @@ impl<const N: usize> Superposer<N> {
             spline.controls.truncate(steps + 1);
             spline.progress.truncate(steps + 1);
         }
-        spline.push(end, length);
-        spline.push(end, length);
-        spline.sharpen(settled.max(1), curve, filter.sharpening);
+        if filter.averages() {
+            spline.push(end, length);
+            spline.average(filter, curve);
+        } else {
+            spline.push(end, length);
+            spline.push(end, length);
+            spline.sharpen(settled.max(1), curve, filter.sharpening);
+        }
         // Three equal control points are a rest.
         let count = spline.controls.len();
         if onward.is_none() {

@@ -11,14 +11,18 @@
 mod attempt;
 mod curve;
 mod pace;
+mod pulses;
 mod spline;
 mod survey;
+mod whole;
 
 use crate::leg::Leg;
 use curve::{Control, Curve};
 use pace::{Filter, Handover, Pace};
+use pulses::Commands;
 use spline::Spline;
 use toolglide_kinematics::{Limits, Piece, Vector};
+pub(crate) use whole::Effort;
 
 /// Most time steps of one stretch.
 const MOST_STEPS: usize = 16_384;
@@ -59,6 +63,9 @@ pub(crate) struct Superposer<const N: usize> {
     next: usize,
     until: usize,
     onward: Option<Onward<N>>,
+    commands: Commands<N>,
+    /// Pieces of trials that may still be judged.
+    effort: usize,
 }
 
 impl<const N: usize> Superposer<N> {
@@ -68,12 +75,14 @@ impl<const N: usize> Superposer<N> {
             limits,
             curve: Curve::with_capacity(legs + 1),
             pace: Pace::new(),
-            spline: Spline::with_capacity(MOST_STEPS + 8),
-            best: Spline::with_capacity(MOST_STEPS + 8),
-            run: Spline::with_capacity(MOST_STEPS + 8),
+            spline: Spline::with_capacity(MOST_STEPS + 64),
+            best: Spline::with_capacity(MOST_STEPS + 64),
+            run: Spline::with_capacity(MOST_STEPS + 64),
             next: 0,
             until: 0,
             onward: None,
+            commands: Commands::new(),
+            effort: usize::MAX,
         }
     }
 
@@ -90,10 +99,7 @@ impl<const N: usize> Superposer<N> {
             if shortest.is_some() && most <= GOOD_ENOUGH * least {
                 break;
             }
-            let filter = Filter {
-                step: share * ramp,
-                sharpening,
-            };
+            let filter = Filter::sharp(share * ramp, sharpening);
             if self.attempt(&filter, ramp, most, None) {
                 shortest = Some(self.spline.duration());
                 std::mem::swap(&mut self.spline, &mut self.best);
@@ -132,10 +138,7 @@ impl<const N: usize> Superposer<N> {
         }
         let ramp = self.ramp(legs);
         let entering = Onward {
-            filter: Filter {
-                step,
-                sharpening: self.best.sharpening,
-            },
+            filter: Filter::sharp(step, self.best.sharpening),
             controls: [-1.0, 0.0, 1.0]
                 .map(|ticks| self.curve.control_at(distance + ticks * advance, 0)),
             progress: [1.0, 2.0].map(|ticks| distance + ticks * advance),

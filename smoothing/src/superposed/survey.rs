@@ -119,7 +119,7 @@ impl<const N: usize> Trial<'_, N> {
     /// Second and third difference of the control points around a distance. Stopping at an end is a change of
     /// speed, and no curvature.
     fn differences(&self, distance: f64, speed: f64) -> [Vector<N>; 2] {
-        let reach = speed * self.filter.step;
+        let reach = speed * self.filter.reach();
         let at = |share: f64| {
             let distance = distance + share * reach;
             self.curve
@@ -135,7 +135,7 @@ impl<const N: usize> Trial<'_, N> {
     }
 
     fn fits(&self, distance: f64, second: &Vector<N>, third: &Vector<N>) -> bool {
-        let step = self.filter.step;
+        let step = self.filter.reach();
         let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
         let off = second.norm() * (1.0 - self.filter.sharpening).max(0.25) / 6.0;
         largest_multiple(second, self.limits.acceleration()) * CURVATURE_ACCELERATION * step * step
@@ -146,7 +146,7 @@ impl<const N: usize> Trial<'_, N> {
 
     /// What curvature leaves of the limits along the path.
     fn rest(&self, distance: f64, speed: f64, second: &Vector<N>, third: &Vector<N>) -> Tangential {
-        let step = self.filter.step;
+        let step = self.filter.reach();
         let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
         let mut rest = Tangential {
             velocity: speed,

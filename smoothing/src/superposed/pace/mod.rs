@@ -40,6 +40,44 @@ pub(super) struct Filter {
     pub(super) step: f64,
     /// Share of the second difference by which control points are moved outward, times six.
     pub(super) sharpening: f64,
+    /// How much more jerk the progress may have than the legs: what the spline makes of it has less.
+    pub(super) stiffness: f64,
+    /// Lengths, in steps, of the two means that are taken of the control points.
+    pub(super) taps: [usize; 2],
+}
+
+impl Filter {
+    /// Of the control points themselves, made of a progress that keeps the limits of the legs.
+    pub(super) fn sharp(step: f64, sharpening: f64) -> Self {
+        Self {
+            step,
+            sharpening,
+            stiffness: 1.0,
+            taps: [1, 1],
+        }
+    }
+
+    /// Whether means are taken.
+    pub(super) fn averages(&self) -> bool {
+        self.taps != [1, 1]
+    }
+
+    /// Time of the longer mean.
+    #[allow(clippy::cast_precision_loss, reason = "counts are small")]
+    pub(super) fn long(&self) -> f64 {
+        self.step * self.taps[0] as f64
+    }
+
+    /// Steps in both means, but for the one at which a command begins to count.
+    pub(super) fn settling(&self) -> usize {
+        self.taps[0] + self.taps[1] - 2
+    }
+
+    /// The time step of a spline of the same width.
+    #[allow(clippy::cast_precision_loss, reason = "counts are small")]
+    pub(super) fn reach(&self) -> f64 {
+        self.step * self.taps[0].max(self.taps[1]) as f64
+    }
 }
 
 /// A part of the stretch with the speed and the changes of speed that it allows.
@@ -130,13 +168,21 @@ impl Pace {
         self.start = *start;
         self.share = share;
         self.lower = 1.0;
-        survey(curve, limits, filter, self.start.distance, share, |place| {
-            let fits = self.places.len() < MOST_PLACES;
-            if fits {
-                self.places.push(place);
-            }
-            fits
-        }) && !self.places.is_empty()
+        survey(
+            curve,
+            limits,
+            filter,
+            self.start.distance,
+            share,
+            |mut place| {
+                place.limits.jerk *= filter.stiffness;
+                let fits = self.places.len() < MOST_PLACES;
+                if fits {
+                    self.places.push(place);
+                }
+                fits
+            },
+        ) && !self.places.is_empty()
     }
 
     /// Notes that the places around a distance must be slowed.

@@ -5,6 +5,7 @@
 //! it.
 
 use super::{Differences, Spline};
+use crate::leg::Leg;
 use crate::superposed::curve::{Curve, distance_to};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, Vector, largest_multiple};
@@ -12,6 +13,9 @@ use toolglide_kinematics::{Limits, Vector, largest_multiple};
 /// Parts into which a piece is cut where its Bezier points are compared with the path: at first, and
 /// where that is not sharp enough.
 const PARTS: [usize; 2] = [4, 16];
+
+/// Legs beside a part of a piece that are compared with it one by one.
+const FEW: usize = 12;
 
 /// Share of the limits that changes of speed use at the least where they are to blame for an excess.
 const ALONG: f64 = 0.6;
@@ -40,7 +44,7 @@ impl<const N: usize> Spline<N> {
         let [a, _, _, d] = self.four(index);
         let feedrate = curve.legs()[a.leg..=d.leg]
             .iter()
-            .fold(f64::INFINITY, |least, leg| least.min(leg.limits.velocity));
+            .fold(0.0_f64, |most, leg| most.max(leg.feedrate));
         let differences = self.differences(index);
         let Differences { seconds, third, .. } = differences;
         let slack = 1.0 - LIMIT_SLACK;
@@ -97,10 +101,28 @@ impl<const N: usize> Spline<N> {
     /// when the motion stays within the tolerance of the path, and the path of the motion.
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
     fn nearness(&self, index: usize, curve: &Curve<N>, parts: usize) -> f64 {
-        let [a, b, c, d] = self.four(index);
-        let room = curve.legs()[a.leg..=d.leg]
+        let four = self.four(index);
+        let [a, b, c, d] = four;
+        // Motion and curve do not advance alike; the part of the curve is taken longer by that.
+        let lag = ((c.distance - 2.0 * b.distance + a.distance).abs())
+            .max((d.distance - 2.0 * c.distance + b.distance).abs())
+            / 6.0;
+        let spread = 0.25 * (self.around - 1) as f64 * (c.distance - b.distance).abs();
+        let first = curve.leg_at(a.distance - spread, a.leg);
+        let last = curve.leg_at(d.distance + spread, d.leg);
+        let room = curve.legs()[first..=last]
             .iter()
             .fold(f64::INFINITY, |least, leg| least.min(leg.room().length()));
+        if b.leg == c.leg {
+            // The piece lies among its control points.
+            let beside = &curve.legs()[b.leg];
+            let off = four.iter().fold(0.0_f64, |most, control| {
+                most.max(distance_to(&control.point, &beside.start, &beside.end))
+            });
+            if off <= room {
+                return room / off.max(f64::MIN_POSITIVE);
+            }
+        }
         let mut furthest = 0.0_f64;
         let mut rest = [
             (a.point + b.point * 4.0 + c.point) / 6.0,
@@ -108,12 +130,8 @@ impl<const N: usize> Spline<N> {
             (b.point + c.point * 2.0) / 3.0,
             (b.point + c.point * 4.0 + d.point) / 6.0,
         ];
-        // Motion and curve do not advance alike; the part of the curve is taken longer by that.
-        let lag = ((c.distance - 2.0 * b.distance + a.distance).abs())
-            .max((d.distance - 2.0 * c.distance + b.distance).abs())
-            / 6.0;
         let advance = (c.distance - b.distance) / parts as f64;
-        let pad = lag + 0.5 * advance.abs() + 0.5 * room;
+        let pad = lag + 0.5 * advance.abs() + 0.5 * room + spread;
         for part in 0..parts {
             let (points, remaining) = split(&rest, 1.0 / (parts - part) as f64);
             rest = remaining;
@@ -122,7 +140,17 @@ impl<const N: usize> Spline<N> {
             let off = points
                 .iter()
                 .fold(0.0_f64, |most, point| most.max(span.distance(point)));
-            furthest = furthest.max(off + span.deviation);
+            let mut off = off + span.deviation;
+            if off > room && span.legs.len() <= FEW {
+                // Beside a sharp corner the part is near one of the legs.
+                off = span.legs.iter().fold(off, |least, leg| {
+                    let beside = points.iter().fold(0.0_f64, |most, point| {
+                        most.max(distance_to(point, &leg.start, &leg.end))
+                    });
+                    least.min(beside)
+                });
+            }
+            furthest = furthest.max(off);
             // Each corner of the path beside this part must be near it.
             let flat = distance_to(&points[1], &points[0], &points[3])
                 .max(distance_to(&points[2], &points[0], &points[3]));
@@ -138,13 +166,37 @@ impl<const N: usize> Spline<N> {
         room / furthest.max(f64::MIN_POSITIVE)
     }
 
+    /// Whether the motion passes all corners of the curve within their tolerance one after the other.
+    #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+    pub(in crate::superposed) fn passes_in_order(&self, curve: &Curve<N>) -> bool {
+        let cuts = PARTS[1];
+        let mut corners = curve.legs().iter().rev().skip(1).rev().peekable();
+        for piece in 0..self.pieces() {
+            let [a, b, c, d] = self.four(piece).map(|control| control.point);
+            let second = (c - b * 2.0 + a).norm().max((d - c * 2.0 + b).norm());
+            let sagitta = second / (8.0 * (cuts * cuts) as f64);
+            let mut from = (a + b * 4.0 + c) / 6.0;
+            for cut in 1..=cuts {
+                let to = at(&[a, b, c, d], cut as f64 / cuts as f64);
+                while let Some(leg) = corners.peek()
+                    && distance_to(&leg.end, &from, &to) + sagitta <= leg.room().length()
+                {
+                    corners.next();
+                }
+                from = to;
+            }
+        }
+        corners.peek().is_none()
+    }
+
     /// Least distance from a point to the motion around a piece, found on chords and so an upper
     /// bound once their sagitta is added.
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
     fn nearest(&self, index: usize, point: &Vector<N>) -> f64 {
         let cuts = PARTS[1];
         let mut least = f64::INFINITY;
-        for piece in index.saturating_sub(1)..(index + 2).min(self.pieces()) {
+        let around = self.around;
+        for piece in index.saturating_sub(around)..(index + around + 1).min(self.pieces()) {
             let [a, b, c, d] = self.four(piece).map(|control| control.point);
             let second = (c - b * 2.0 + a).norm().max((d - c * 2.0 + b).norm());
             let sagitta = second / (8.0 * (cuts * cuts) as f64);
@@ -182,14 +234,15 @@ fn split<const N: usize>(points: &[Vector<N>; 4], share: f64) -> ([Vector<N>; 4]
 }
 
 /// A part of the curve as one line, and how far the curve lies from it.
-struct Span<const N: usize> {
+struct Span<'a, const N: usize> {
     from: Vector<N>,
     to: Vector<N>,
     deviation: f64,
+    legs: &'a [Leg<N>],
 }
 
-impl<const N: usize> Span<N> {
-    fn of(curve: &Curve<N>, begin: f64, end: f64, near: usize) -> Self {
+impl<'a, const N: usize> Span<'a, N> {
+    fn of(curve: &'a Curve<N>, begin: f64, end: f64, near: usize) -> Self {
         let (first, last) = (curve.leg_at(begin, near), curve.leg_at(end, near));
         let from = curve.point(begin, first);
         let to = curve.point(end, last);
@@ -200,6 +253,7 @@ impl<const N: usize> Span<N> {
             from,
             to,
             deviation,
+            legs: &curve.legs()[first..=last],
         }
     }
 

@@ -15,6 +15,23 @@ use toolglide_kinematics::{Piece, Sample, Serves, Vector};
 /// Change of the progress from step to step that is nothing but rounding, relative.
 const STEADY: f64 = 1e-10;
 
+/// The mean of consecutive values up to an index; the first is repeated before it.
+#[allow(clippy::cast_precision_loss, reason = "counts are small")]
+pub(super) fn mean<const N: usize>(
+    taps: usize,
+    index: usize,
+    value: impl Fn(usize) -> (Vector<N>, f64),
+) -> (Vector<N>, f64) {
+    let (mut point, mut distance) = value(index);
+    for back in 1..taps {
+        let (one, along) = value(index.saturating_sub(back));
+        point += one;
+        distance += along;
+    }
+    let share = 1.0 / taps as f64;
+    (point * share, distance * share)
+}
+
 /// A cubic spline over equal time steps.
 #[derive(Clone, Debug)]
 pub(super) struct Spline<const N: usize> {
@@ -25,6 +42,8 @@ pub(super) struct Spline<const N: usize> {
     /// Time of the first of them, since the beginning of the progress.
     pub(super) origin: f64,
     pub(super) sharpening: f64,
+    /// Pieces beside one in which it may pass what it has on its path.
+    around: usize,
     /// Where another progress may go on.
     pub(super) handover: Option<Handover>,
 }
@@ -37,6 +56,7 @@ impl<const N: usize> Spline<N> {
             step: 0.0,
             origin: 0.0,
             sharpening: 0.0,
+            around: 1,
             handover: None,
         }
     }
@@ -47,6 +67,7 @@ impl<const N: usize> Spline<N> {
         self.progress.clear();
         self.step = filter.step;
         self.sharpening = filter.sharpening;
+        self.around = filter.taps[0].max(filter.taps[1]);
         self.handover = None;
     }
 
@@ -54,6 +75,37 @@ impl<const N: usize> Spline<N> {
     pub(super) fn push(&mut self, control: Control<N>, progress: f64) {
         self.controls.push(control);
         self.progress.push(progress);
+    }
+
+    /// Takes means of consecutive control points, twice; what is before them, and what follows, rests.
+    pub(super) fn average(&mut self, filter: &Filter, curve: &Curve<N>) {
+        let settling = filter.settling();
+        let Some(&end) = self.controls.last() else {
+            return;
+        };
+        for _ in 0..settling + 2 {
+            self.push(end, end.distance);
+        }
+        let count = self.controls.len();
+        let first = |index: usize| index.saturating_sub(settling);
+        for index in (0..count).rev() {
+            self.controls[index].serves.first = self.controls[first(index)].serves.first;
+        }
+        for taps in filter.taps {
+            // From the back, so that what is read has not been written.
+            for index in (0..count).rev() {
+                let (point, distance) = mean(taps, index, |at| {
+                    (self.controls[at].point, self.controls[at].distance)
+                });
+                self.controls[index].point = point;
+                self.controls[index].distance = distance;
+            }
+        }
+        for (control, progress) in self.controls.iter_mut().zip(&mut self.progress) {
+            control.distance = control.distance.min(curve.length());
+            control.leg = curve.leg_at(control.distance, control.leg);
+            *progress = control.distance;
+        }
     }
 
     /// Moves the control points from an index on so that the spline follows what they sample: along the
@@ -155,10 +207,7 @@ impl<const N: usize> Spline<N> {
         }
         let next = self.origin + (settled as f64 + 2.0) * self.step;
         let onward = Onward {
-            filter: Filter {
-                step: self.step,
-                sharpening: self.sharpening,
-            },
+            filter: Filter::sharp(self.step, self.sharpening),
             controls,
             progress: [0, 1].map(|offset| self.progress[settled + offset] - passed),
             start: Handover {

@@ -1,0 +1,241 @@
+//! Plans short sections of a path, from rest to rest, in several ways, and hands out the fastest.
+//!
+//! Source: ours. A section is held back until the path comes to rest, unless it grows long: then motion is handed
+//! out as its stretches are planned, until the next rest. Not here: the plans.
+
+mod ways;
+
+use crate::leg::Leg;
+use crate::merge::{Merger, Vertex};
+use crate::method::Settings;
+use crate::stretch::{FINE_SHARE, Stretches, stops_within};
+use std::collections::VecDeque;
+use toolglide_kinematics::numeric::TIME_SLACK;
+use toolglide_kinematics::{Pause, Piece, Tolerance, Vector};
+use ways::Ways;
+
+/// Most vertices, and most legs, of a section that is held back; no more vertices than the window has corners.
+const MOST_HELD: usize = 1024;
+
+/// Most time that the legs of a section that is held back take at their feedrates, s.
+const MOST_TIME: f64 = 3.0;
+
+/// Most pieces of a section that is held back.
+const MOST_PIECES: usize = 8192;
+
+/// Most legs on which the motion can reach its feedrate and stop again, of a section that is held back though these
+/// take more than such a share of its time: what is before them hardly depends on what follows.
+const MOST_LONG: usize = 1;
+const LONG_SHARE: f64 = 0.5;
+
+/// A leg is long if it is longer than so many stops.
+const LONG: f64 = 2.0;
+
+/// Plans section by section.
+#[derive(Clone, Debug)]
+pub(crate) struct Sections<const N: usize> {
+    stretches: Stretches<N>,
+    state: State,
+    /// The section that is held back: where it begins, its legs, and what corners are made of.
+    start: Vector<N>,
+    merger: Merger<N>,
+    legs: Vec<Leg<N>>,
+    vertices: Vec<Vertex<N>>,
+    within_arc: bool,
+    long: usize,
+    /// Time that these take at their feedrates, and that all legs take.
+    long_time: f64,
+    time: f64,
+    window: usize,
+    ways: Ways<N>,
+    /// Motion: the first `ready` pieces are to be handed out, those of the section behind them may still become
+    /// others.
+    held: VecDeque<Piece<N>>,
+    ready: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// The motion of the section is held back.
+    Held,
+    /// It is handed out as it comes.
+    Streaming,
+    /// A section has come to rest, and no other has begun.
+    Rested,
+}
+
+impl<const N: usize> Sections<N> {
+    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+        Self {
+            stretches: Stretches::new(start, settings),
+            state: State::Rested,
+            start,
+            merger: Merger::new(start, settings.limits, FINE_SHARE),
+            legs: Vec::with_capacity(MOST_HELD + 2),
+            vertices: Vec::with_capacity(MOST_HELD + 2),
+            within_arc: false,
+            long: 0,
+            long_time: 0.0,
+            time: 0.0,
+            window: settings.window.min(MOST_HELD),
+            ways: Ways::new(start, settings),
+            held: VecDeque::with_capacity(2 * MOST_PIECES),
+            ready: 0,
+        }
+    }
+
+    /// Takes the next vertex.
+    pub(crate) fn push(&mut self, vertex: Vertex<N>) {
+        self.begin();
+        self.stretches.push(vertex);
+        if self.state != State::Held {
+            return;
+        }
+        if !self.within_arc {
+            self.vertices.push(vertex);
+        }
+        if let Some(leg) = self.merger.push(vertex) {
+            self.take(leg);
+        }
+        self.hold();
+    }
+
+    /// An arc begins: corners are made of these vertices instead of those to come.
+    pub(crate) fn begin_arc(
+        &mut self,
+        tolerance: Tolerance,
+        vertices: impl Iterator<Item = Vertex<N>>,
+    ) {
+        self.begin();
+        let (own, held) = (&mut self.vertices, self.state == State::Held);
+        self.stretches.begin_arc(
+            tolerance,
+            vertices.inspect(|vertex| {
+                if held && own.len() <= MOST_HELD {
+                    own.push(*vertex);
+                }
+            }),
+        );
+        self.within_arc = true;
+        self.part();
+    }
+
+    /// The arc has ended.
+    pub(crate) fn end_arc(&mut self) {
+        self.stretches.end_arc();
+        self.within_arc = false;
+        self.part();
+    }
+
+    /// The motion must rest where the path has come to.
+    pub(crate) fn rest(&mut self) {
+        self.stretches.rest();
+        self.part();
+        if self.state == State::Held {
+            self.choose();
+        }
+        self.ready = self.held.len();
+        self.state = State::Rested;
+    }
+
+    /// The motion must pause where the path has come to.
+    pub(crate) fn dwell(&mut self, pause: Pause<N>) {
+        self.rest();
+        self.stretches.dwell(pause);
+    }
+
+    /// The path ends.
+    pub(crate) fn close(&mut self) {
+        self.rest();
+        self.stretches.close();
+    }
+
+    /// The next piece of finished motion.
+    pub(crate) fn pull(&mut self) -> Option<Piece<N>> {
+        if self.ready > 0 {
+            self.ready -= 1;
+            return self.held.pop_front();
+        }
+        if self.state == State::Held {
+            return None;
+        }
+        self.stretches.pull()
+    }
+
+    /// Begins a section where the path has come to rest.
+    fn begin(&mut self) {
+        if self.state != State::Rested {
+            return;
+        }
+        self.held
+            .extend(std::iter::from_fn(|| self.stretches.pull()));
+        self.ready = self.held.len();
+        self.state = State::Held;
+        self.start = self.stretches.position();
+        self.merger.restart(self.start);
+        self.legs.clear();
+        self.vertices.clear();
+        self.within_arc = false;
+        self.long = 0;
+        self.long_time = 0.0;
+        self.time = 0.0;
+    }
+
+    /// Ends the leg under way.
+    fn part(&mut self) {
+        if self.state == State::Held {
+            if let Some(leg) = self.merger.flush() {
+                self.take(leg);
+            }
+            self.hold();
+        }
+    }
+
+    fn take(&mut self, leg: Leg<N>) {
+        let time = leg.length / leg.limits.velocity;
+        self.time += time;
+        if stops_within(&leg) > LONG {
+            self.long += 1;
+            self.long_time += time;
+        }
+        self.legs.push(leg);
+    }
+
+    /// Holds back what the stretches have ready, unless the section has grown long.
+    fn hold(&mut self) {
+        let most = self.ready + MOST_PIECES;
+        while self.held.len() < most
+            && let Some(piece) = self.stretches.pull()
+        {
+            self.held.push_back(piece);
+        }
+        let long = self.legs.len() >= MOST_HELD
+            || self.vertices.len() >= self.window
+            || self.time > MOST_TIME
+            || self.held.len() >= most
+            || (self.long > MOST_LONG && self.long_time > LONG_SHARE * self.time);
+        if long {
+            self.ready = self.held.len();
+            self.state = State::Streaming;
+        }
+    }
+
+    /// Puts another motion in the place of what is held, where there is a faster one.
+    fn choose(&mut self) {
+        if self.merger.take_carried().is_some() {
+            return;
+        }
+        let held = self.held.range(self.ready..);
+        let most = held.map(Piece::duration).sum::<f64>() - TIME_SLACK;
+        let Self {
+            ways,
+            stretches,
+            held,
+            ..
+        } = self;
+        if ways.find(stretches, self.start, &self.legs, &self.vertices, most) {
+            held.truncate(self.ready);
+            held.extend(std::iter::from_fn(|| ways.pull(stretches)));
+        }
+    }
+}
