@@ -15,6 +15,10 @@ pub const MOST_FILTERS: usize = 8;
 /// cubic in time, so that behind much longer filters they would lose nanometres.
 pub const LONGEST_TIME_CONSTANT: f64 = 10.0;
 
+/// Shortest time constant, s: a microsecond, far below any servo period. The jerk of a chain goes with one over the
+/// product of two, and times are told apart by a picosecond.
+pub const SHORTEST_TIME_CONSTANT: f64 = 1e-6;
+
 /// A product of angular frequency and time constant below this leaves a filter without effect: its
 /// gain differs from 1 by less than the rounding.
 const NO_EFFECT: f64 = 1e-8;
@@ -51,6 +55,7 @@ impl FilterChain {
     /// # Errors
     /// [`FirError::FilterCount`] for none or for more than [`MOST_FILTERS`],
     /// [`FirError::NotPositive`] for a time constant that is not positive and finite,
+    /// [`FirError::TooShort`] for one below [`SHORTEST_TIME_CONSTANT`],
     /// [`FirError::TooLong`] for one above [`LONGEST_TIME_CONSTANT`].
     pub fn with_time_constants(time_constants: &[f64]) -> Result<Self, FirError> {
         let given = time_constants.len();
@@ -69,6 +74,12 @@ impl FilterChain {
             }
         }
         for &time_constant in time_constants {
+            if time_constant < SHORTEST_TIME_CONSTANT {
+                return Err(FirError::TooShort {
+                    time_constant,
+                    shortest: SHORTEST_TIME_CONSTANT,
+                });
+            }
             if time_constant > LONGEST_TIME_CONSTANT {
                 return Err(FirError::TooLong {
                     time_constant,

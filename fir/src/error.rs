@@ -33,6 +33,14 @@ pub enum FirError {
         /// Its time constant, s.
         time_constant: f64,
     },
+    /// A time constant is at least [`SHORTEST_TIME_CONSTANT`](crate::SHORTEST_TIME_CONSTANT).
+    #[error("time constant is {time_constant:e} s, but {shortest:e} s is the shortest")]
+    TooShort {
+        /// What was given, s.
+        time_constant: f64,
+        /// The shortest, s.
+        shortest: f64,
+    },
     /// A time constant is at most [`LONGEST_TIME_CONSTANT`](crate::LONGEST_TIME_CONSTANT).
     #[error("time constant is {time_constant} s, but {longest} s is the longest")]
     TooLong {

@@ -30,7 +30,7 @@ mod tick_pulse;
 mod ticks;
 mod train;
 
-pub use chain::{FilterChain, LONGEST_TIME_CONSTANT, MOST_FILTERS};
+pub use chain::{FilterChain, LONGEST_TIME_CONSTANT, MOST_FILTERS, SHORTEST_TIME_CONSTANT};
 pub use circle::largest_circle_feed;
 pub use error::FirError;
 pub use mode::Mode;

@@ -1,6 +1,6 @@
 //! What can be wrong with limits and paths.
 
-use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LEAST_QUANTITY};
+use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LEAST_QUANTITY, LONGEST_RAMP};
 use thiserror::Error;
 
 /// Why limits are refused.
@@ -15,13 +15,32 @@ pub enum LimitsError {
         /// What was given.
         value: f64,
     },
-    /// A limit is below [`LEAST_QUANTITY`].
-    #[error("{quantity} limit is {value}, but must be at least {LEAST_QUANTITY}")]
+    /// A limit is below what any axis needs.
+    #[error("{quantity} limit is {value}, but must be at least {least}")]
     TooSmall {
         /// Which limit.
         quantity: &'static str,
         /// What was given.
         value: f64,
+        /// The least.
+        least: f64,
+    },
+    /// One limit would take longer than [`LONGEST_RAMP`] to reach at the next.
+    #[error(
+        "{quantity} limit is {value}, so that the {reached} of {limit} takes {seconds:.0} s to reach, but it may take \
+         {LONGEST_RAMP} s"
+    )]
+    TooSlow {
+        /// Which limit.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is reached by it.
+        reached: &'static str,
+        /// The limit of that.
+        limit: f64,
+        /// One over the other, s.
+        seconds: f64,
     },
     /// A limit is above [`LARGEST_QUANTITY`].
     #[error("{quantity} limit is {value}, but may be at most {LARGEST_QUANTITY:e}")]

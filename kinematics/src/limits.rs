@@ -4,7 +4,7 @@
 //! and 3.2. Not here: travel, which belongs to a machine.
 
 use crate::error::LimitsError;
-use crate::numeric::{LARGEST_QUANTITY, LEAST_QUANTITY};
+use crate::numeric::{LARGEST_QUANTITY, LEAST_ACCELERATION, LEAST_QUANTITY, LONGEST_RAMP};
 use crate::vector::Vector;
 
 /// The limits of one axis.
@@ -20,7 +20,9 @@ impl AxisLimits {
     ///
     /// # Errors
     /// [`LimitsError::NotPositive`] names the first quantity that is not, [`LimitsError::TooSmall`] the first
-    /// one below [`LEAST_QUANTITY`], [`LimitsError::TooLarge`] the first one above [`LARGEST_QUANTITY`].
+    /// one below [`LEAST_QUANTITY`] or [`LEAST_ACCELERATION`], [`LimitsError::TooLarge`] the first one above
+    /// [`LARGEST_QUANTITY`]; [`LimitsError::TooSlow`] where acceleration or velocity takes longer than
+    /// [`LONGEST_RAMP`] to reach.
     ///
     /// # Examples
     /// ```
@@ -29,19 +31,38 @@ impl AxisLimits {
     /// assert!(AxisLimits::new(500.0, 0.0, 5e4).is_err());
     /// ```
     pub fn new(velocity: f64, acceleration: f64, jerk: f64) -> Result<Self, LimitsError> {
-        for (quantity, value) in [
-            ("velocity", velocity),
-            ("acceleration", acceleration),
-            ("jerk", jerk),
+        for (quantity, value, least) in [
+            ("velocity", velocity, LEAST_QUANTITY),
+            ("acceleration", acceleration, LEAST_ACCELERATION),
+            ("jerk", jerk, LEAST_ACCELERATION),
         ] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(LimitsError::NotPositive { quantity, value });
             }
-            if value < LEAST_QUANTITY {
-                return Err(LimitsError::TooSmall { quantity, value });
+            if value < least {
+                return Err(LimitsError::TooSmall {
+                    quantity,
+                    value,
+                    least,
+                });
             }
             if value > LARGEST_QUANTITY {
                 return Err(LimitsError::TooLarge { quantity, value });
+            }
+        }
+        for (quantity, value, reached, limit) in [
+            ("jerk", jerk, "acceleration", acceleration),
+            ("acceleration", acceleration, "velocity", velocity),
+        ] {
+            let seconds = limit / value;
+            if seconds > LONGEST_RAMP {
+                return Err(LimitsError::TooSlow {
+                    quantity,
+                    value,
+                    reached,
+                    limit,
+                    seconds,
+                });
             }
         }
         Ok(Self {
@@ -233,6 +254,35 @@ mod tests {
             (limits.along(&Vector::<2>::x()).jerk - 1e4).abs() < 1e-9,
             "x alone"
         );
+    }
+
+    #[test]
+    fn limits_that_no_axis_has_are_refused_with_their_bound() {
+        assert!(AxisLimits::new(9e-4, 1e-6, 1e-6).is_ok(), "the least");
+        assert!(AxisLimits::new(1.0, 1.0, 1e-3).is_ok(), "the slowest");
+        assert!(AxisLimits::new(1e15, 1e15, 1e15).is_ok(), "the largest");
+        for (limits, message) in [
+            (
+                [1.0, 9e-7, 1.0],
+                "acceleration limit is 0.0000009, but must be at least 0.000001",
+            ),
+            (
+                [1.0, 1.0, 9.5e-4],
+                "jerk limit is 0.00095, so that the acceleration of 1 takes 1053 s to reach, but it may take 1000 s",
+            ),
+            (
+                [1.1e3, 1.0, 1.0],
+                "acceleration limit is 1, so that the velocity of 1100 takes 1100 s to reach, but it may take 1000 s",
+            ),
+            (
+                [1.1e15, 1.0, 1.0],
+                "velocity limit is 1100000000000000, but may be at most 1e15",
+            ),
+        ] {
+            let [velocity, acceleration, jerk] = limits;
+            let refused = AxisLimits::new(velocity, acceleration, jerk).unwrap_err();
+            assert_eq!(refused.to_string(), message);
+        }
     }
 
     #[test]

@@ -53,6 +53,10 @@ pub const COORDINATE_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// rounding stays far below.
 pub const JUMP_SLACK: f64 = 1e-9;
 
+/// Most of a limit that a change between two pieces may be put down to the rounding of coordinates, as a share: a
+/// thousand such changes are a thousandth of the limit.
+pub const COORDINATE_JUMP: f64 = 1e-6;
+
 /// Room granted to a duration, s: a nanosecond, far below any period and far above the rounding of
 /// the durations that are added.
 pub const TIME_SLACK: f64 = 1e-9;
@@ -107,6 +111,14 @@ pub const LEAST_QUANTITY: f64 = 1e-9;
 /// How many moves ahead the judge of set-points looks at most for a motion that has left its path:
 /// enough for moves of a hundredth of the tolerance, and a millisecond at worst.
 pub const LOOK_AHEAD_MOVES: u32 = 1024;
+
+/// Limits of acceleration and jerk below this are refused, mm, rad and their quotients with s: over ten kilometres a
+/// motion would take months.
+pub const LEAST_ACCELERATION: f64 = 1e-6;
+
+/// An axis that takes longer than this to build up its acceleration, or to reach its velocity at that, is refused, s:
+/// a quarter of an hour of one phase beside the milliseconds of another leaves too few digits of either.
+pub const LONGEST_RAMP: f64 = 1e3;
 
 /// Orientations nearer than this are one, rad: a nanometre at the end of a tool of a metre.
 pub const SAME_ORIENTATION: f64 = 1e-9;

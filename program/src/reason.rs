@@ -11,7 +11,7 @@ use crate::statement_error::StatementError;
 use std::sync::Arc;
 use thiserror::Error;
 use toolglide_kinematics::ToolpathError;
-use toolglide_kinematics::numeric::LEAST_QUANTITY;
+use toolglide_kinematics::numeric::{LARGEST_QUANTITY, LEAST_QUANTITY};
 
 /// Why a word, a line or a file is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -250,7 +250,7 @@ pub enum Reason {
     NoInverseTime,
     /// A feedrate that cannot be followed.
     #[error(
-        "feedrate comes to {speed} mm/s, but must be finite and at least {LEAST_QUANTITY} mm/s"
+        "feedrate comes to {speed} mm/s, but must be finite, at least {LEAST_QUANTITY} and at most {LARGEST_QUANTITY:e} mm/s"
     )]
     Feedrate {
         /// The feedrate, mm/s.

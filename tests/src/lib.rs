@@ -8,6 +8,7 @@
     reason = "only tests use this crate: a failed unwrap is a failed test"
 )]
 
+pub mod anything;
 pub mod bounds;
 pub mod corpus;
 pub mod course;

@@ -8,7 +8,9 @@ use super::leg::{is_measurable, length_slack};
 use super::report::{Peak, Place, Report};
 use super::violation::Violation;
 use crate::limits::Limits;
-use crate::numeric::{JUMP_SLACK, LARGEST_MAGNITUDE, LIMIT_SLACK};
+use crate::numeric::{
+    COORDINATE_JUMP, COORDINATE_ROUNDING, JUMP_SLACK, LARGEST_MAGNITUDE, LENGTH_SLACK, LIMIT_SLACK,
+};
 use crate::piece::Piece;
 use crate::sample::Sample;
 use crate::vector::Vector;
@@ -70,18 +72,39 @@ impl<const N: usize> Stretch<N> {
 
     /// Whether the whole piece stands still.
     pub(super) fn rests(&self, limits: &Limits<N>) -> bool {
-        moving_axis(&self.start, limits).is_none() && moving_axis(&self.end, limits).is_none() && {
-            let room = length_slack(self.start.position.amax());
-            (self.end.position - self.start.position).amax() <= room
-        }
+        let (begin, end) = (self.begin, self.begin + self.duration);
+        moving_axis(&self.start, limits, begin).is_none()
+            && moving_axis(&self.end, limits, end).is_none()
+            && {
+                let room = length_slack(self.start.position.amax());
+                (self.end.position - self.start.position).amax() <= room
+            }
     }
 }
 
-/// The first axis that is not at rest.
-pub(super) fn moving_axis<const N: usize>(at: &Sample<N>, limits: &Limits<N>) -> Option<usize> {
+/// Room for the rounding of velocity and acceleration of an axis at a time.
+///
+/// Both are sums of products below the limit, which [`JUMP_SLACK`] covers; and at a time `t` instants are told apart
+/// by no less than the rounding of `t`, within which the axis may legally change its velocity by its limit of
+/// acceleration, and that by its limit of jerk, times as much.
+fn rounding<const N: usize>(limits: &Limits<N>, axis: usize, time: f64) -> [f64; 2] {
+    let instant = COORDINATE_ROUNDING * time;
+    let (velocity, acceleration) = (limits.velocity()[axis], limits.acceleration()[axis]);
+    [
+        JUMP_SLACK * velocity + instant * acceleration,
+        JUMP_SLACK * acceleration + instant * limits.jerk()[axis],
+    ]
+}
+
+/// The first axis that is not at rest at a time.
+pub(super) fn moving_axis<const N: usize>(
+    at: &Sample<N>,
+    limits: &Limits<N>,
+    time: f64,
+) -> Option<usize> {
     (0..N).find(|&axis| {
-        at.velocity[axis].abs() > JUMP_SLACK * limits.velocity()[axis]
-            || at.acceleration[axis].abs() > JUMP_SLACK * limits.acceleration()[axis]
+        let [velocity, acceleration] = rounding(limits, axis, time);
+        at.velocity[axis].abs() > velocity || at.acceleration[axis].abs() > acceleration
     })
 }
 
@@ -233,12 +256,18 @@ pub(super) fn note_feedrate<const N: usize>(
     }
 }
 
-/// Whether a piece continues the state before it, and ends where it says.
+/// Whether a piece continues the state before it, and ends where it says, both within the rounding of its own
+/// positions or the `room` for that along its moves. The piece before `lasted` so long.
+///
+/// A change of velocity by `e / t`, or of acceleration by `e / t^2`, over a piece of a time `t` moves no point of it by
+/// more than the rounding `e` of its coordinates; planners that take differences of points have no better. At most a
+/// millionth of the limit is put down to that.
 pub(super) fn judge_continuity<const N: usize>(
     report: &mut Report<N>,
     limits: &Limits<N>,
     before: &Sample<N>,
     stretch: &Stretch<N>,
+    (room, lasted): (f64, f64),
     place: Place,
 ) {
     let start = &stretch.start;
@@ -250,15 +279,24 @@ pub(super) fn judge_continuity<const N: usize>(
         (miss, stretch.begin + stretch.duration),
     ] {
         report.position_jump.raise(value, time, place);
-        if value > length_slack(reach) {
+        if value > length_slack(reach).max(room) {
             report.add(Violation::PositionJump { value, time, place });
         }
     }
     let time = stretch.begin;
+    // What the rounding of coordinates makes of differences over the shorter of the two pieces.
+    let coordinate = (length_slack(reach).max(room) - LENGTH_SLACK).max(0.0);
+    let step = lasted.min(stretch.duration);
     for axis in 0..N {
+        let mut allowed = rounding(limits, axis, time);
+        let most = [limits.velocity()[axis], limits.acceleration()[axis]];
+        for (order, allowed) in [1, 2].into_iter().zip(&mut allowed) {
+            let shown = coordinate / step.powi(order);
+            *allowed += shown.min(COORDINATE_JUMP * most[usize::from(order == 2)]);
+        }
         let value = (start.velocity[axis] - before.velocity[axis]).abs();
         report.velocity_jump.raise(value, time, place);
-        if value > JUMP_SLACK * limits.velocity()[axis] {
+        if value > allowed[0] {
             report.add(Violation::VelocityJump {
                 axis,
                 value,
@@ -268,7 +306,7 @@ pub(super) fn judge_continuity<const N: usize>(
         }
         let value = (start.acceleration[axis] - before.acceleration[axis]).abs();
         report.acceleration_jump.raise(value, time, place);
-        if value > JUMP_SLACK * limits.acceleration()[axis] {
+        if value > allowed[1] {
             report.add(Violation::AccelerationJump {
                 axis,
                 value,

@@ -231,7 +231,7 @@ fn resting_points<const N: usize>(
         ..
     } = stretch;
     let resting = |at: f64, state: &Sample<N>, position: Vector<N>| {
-        moving_axis(state, limits)
+        moving_axis(state, limits, stretch.begin + at)
             .is_none()
             .then_some((at, position))
     };
