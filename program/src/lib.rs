@@ -56,6 +56,7 @@
 mod aftermath;
 mod arcs;
 mod arithmetic_error;
+mod asides;
 mod axis_words;
 mod bezier;
 mod block;

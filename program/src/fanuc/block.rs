@@ -6,17 +6,15 @@
 use crate::block::{AXES, Block};
 use crate::code::Code;
 use crate::codes::Motion;
-use crate::corners::CornerKind;
 use crate::error::Fault;
 use crate::fanuc::Fanuc;
-use crate::fanuc::codes::{Machine, Special, Use, miscellaneous, preparatory};
+use crate::fanuc::codes::{Machine, Special};
 use crate::fanuc::words::{Word, words};
 use crate::lexer::Word as Plain;
 use crate::lower::Lowering;
 use crate::machining_error::MachiningError;
 use crate::place::Span;
 use crate::program::Program;
-use crate::reason::Reason;
 use std::io::BufRead;
 
 /// A code with its place.
@@ -40,11 +38,11 @@ pub(crate) struct Asked {
     pub(crate) system: Option<Taken>,
     pub(crate) call: Option<(Machine, Span)>,
     /// Noted `M` codes, which may have words of their own.
-    functions: bool,
+    pub(crate) functions: bool,
     /// Code of tool length, in tenths.
-    length: Option<u16>,
-    side: bool,
-    shift: Option<Taken>,
+    pub(crate) length: Option<u16>,
+    pub(crate) side: bool,
+    pub(crate) shift: Option<Taken>,
 }
 
 impl Fanuc {
@@ -120,382 +118,6 @@ impl Fanuc {
             Some((which, span)) => self.call(which, span, &arguments, program),
             None => Ok(()),
         }
-    }
-
-    /// Takes all codes out of the words.
-    fn take_codes<R: BufRead>(
-        &mut self,
-        list: &mut Vec<Word>,
-        asked: &mut Asked,
-        program: &mut Program<R>,
-    ) -> Result<(), Fault> {
-        let mut index = 0;
-        while let Some(&word) = list.get(index) {
-            if word.comma || !matches!(word.letter, b'G' | b'M') {
-                index += 1;
-                continue;
-            }
-            list.remove(index);
-            if word.letter == b'M' {
-                self.function(word, asked, program)?;
-            } else {
-                self.code(word, list, asked, program)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn code<R: BufRead>(
-        &mut self,
-        word: Word,
-        list: &mut Vec<Word>,
-        asked: &mut Asked,
-        program: &mut Program<R>,
-    ) -> Result<(), Fault> {
-        let Some(code) = Code::of_number(b'G', word.value, 1) else {
-            let (letter, value) = ('G', word.value);
-            let bound = "a number from 0 to 999 with one decimal at most";
-            let reason = Reason::NotACode {
-                letter,
-                value,
-                bound,
-            };
-            return Err(Fault::new(word.span, reason));
-        };
-        let tenths = code.tenths().unwrap_or_default();
-        match preparatory(tenths) {
-            Use::Same(same) => {
-                asked.motion = match same {
-                    0 => Some(Motion::Rapid),
-                    10 => Some(Motion::Line),
-                    20 => Some(Motion::Clockwise),
-                    30 => Some(Motion::CounterClockwise),
-                    730.. if same < 900 => Some(Motion::Off),
-                    _ => asked.motion,
-                };
-                match same {
-                    430 | 434 | 435 | 490 => asked.length = Some(same),
-                    400 | 410 | 420 => asked.side = same != 400,
-                    _ => {}
-                }
-                return Self::add(b'G', f64::from(same) / 10.0, word.span, program);
-            }
-            Use::Noted(what, letters) => {
-                program.block.count(0, code);
-                list.retain(|word| word.comma || !letters.contains(&word.letter));
-                self.note(&code.to_string(), what, word.span, program);
-            }
-            Use::Refused(what) => {
-                let reason = Reason::NotSupported { code, what };
-                return Err(Fault::new(word.span, reason));
-            }
-            Use::Unknown => return Err(Fault::new(word.span, Reason::UnknownCode { code })),
-            Use::Does(special) => {
-                let span = word.span;
-                let taken = Taken {
-                    special,
-                    code,
-                    span,
-                };
-                return self.special(taken, list, asked, program);
-            }
-        }
-        Ok(())
-    }
-
-    fn special<R: BufRead>(
-        &mut self,
-        taken: Taken,
-        list: &mut Vec<Word>,
-        asked: &mut Asked,
-        program: &mut Program<R>,
-    ) -> Result<(), Fault> {
-        let Taken { code, span, .. } = taken;
-        let cycle = match taken.special {
-            Special::FineBore => Some(Motion::Cycle(76)),
-            Special::BackBore => Some(Motion::BackBore),
-            _ => None,
-        };
-        // These become words of RS274/NGC, which are counted there.
-        let counted = matches!(
-            taken.special,
-            Special::Machine | Special::Dwell | Special::System(_) | Special::Shift
-        );
-        if !counted {
-            program.block.count(0, code);
-        }
-        if let Some(motion) = cycle {
-            asked.motion = Some(Motion::Off);
-            return program.block.take_cycle(motion, code, span);
-        }
-        match taken.special {
-            Special::ExactStop => asked.exact_stop = true,
-            Special::Dwell => asked.dwell = Some(taken),
-            Special::Machine => {
-                asked.machine = true;
-                return Self::add(b'G', 53.0, span, program);
-            }
-            Special::EndCycle => asked.end_cycle = true,
-            Special::AgainstLength => {
-                asked.length = Some(440);
-                return program.block.take_against(code, span);
-            }
-            Special::System(_) | Special::Extended | Special::Numbered(_) => {
-                if let Some(first) = asked.system {
-                    return Err(same_group(&first, &taken, "coordinate system"));
-                }
-                asked.system = Some(taken);
-            }
-            Special::Shift => asked.shift = Some(taken),
-            Special::Polar(on) => self.set_polar(on, program),
-            Special::EndCall => self.end_modal_macro(),
-            Special::Mode(mode) => return self.mode(mode, taken, list, program),
-            _ => {
-                if let Some(first) = asked.action {
-                    return Err(same_group(&first, &taken, "codes for one block"));
-                }
-                asked.action = Some(taken);
-            }
-        }
-        Ok(())
-    }
-
-    fn function<R: BufRead>(
-        &mut self,
-        word: Word,
-        asked: &mut Asked,
-        program: &mut Program<R>,
-    ) -> Result<(), Fault> {
-        let span = word.span;
-        let number = word.value.round();
-        if (word.value - number).abs() > 1e-9 || !(0.0..=9999.0).contains(&number) {
-            let reason = Reason::NotACode {
-                letter: 'M',
-                value: word.value,
-                bound: "a whole number from 0 to 9999",
-            };
-            return Err(Fault::new(span, reason));
-        }
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "whole and within the bounds checked above"
-        )]
-        let number = number as u16;
-        self.memory.set_letter(b'M', f64::from(number));
-        let code = Code::of_number(b'M', f64::from(number), 10);
-        let which = miscellaneous(number);
-        if which == Machine::Same {
-            return Self::add(b'M', f64::from(number), span, program);
-        }
-        if let Some(code) = code {
-            program.block.count(1, code);
-        }
-        match which {
-            Machine::Refused(what) => {
-                let word = format!("M{number}").into();
-                return Err(Fault::new(span, Reason::WordNotSupported { word, what }));
-            }
-            Machine::Noted => {
-                asked.functions = true;
-                self.note(
-                    &format!("M{number}"),
-                    "a function of the machine",
-                    span,
-                    program,
-                );
-            }
-            _ if asked.call.is_some() => {
-                let word = format!("M{number}").into();
-                let what = "two calls or returns in one block";
-                return Err(Fault::new(span, Reason::WordNotSupported { word, what }));
-            }
-            _ => asked.call = Some((which, span)),
-        }
-        Ok(())
-    }
-
-    /// Takes the words of an action, of a call, and of functions of the machine out of the others.
-    fn arguments_of(list: &mut Vec<Word>, asked: &mut Asked) -> Vec<Word> {
-        let letters: &[u8] = match asked.action.map(|taken| taken.special) {
-            Some(Special::SetData) => b"XYZABCLPR",
-            Some(Special::Pocket { .. }) => b"XYZIJKQDL",
-            Some(Special::Scaling(true)) => b"XYZIJKP",
-            Some(Special::Mirror(_)) => b"XYZ",
-            Some(Special::Rotation(true)) => b"XYZABCR",
-            Some(Special::Scaling(false) | Special::Rotation(false)) => b"",
-            Some(Special::OtherHome) => b"XYZABCP",
-            Some(_) => b"XYZABC",
-            None => b"",
-        };
-        let called: &[u8] = match asked.call {
-            Some((Machine::Return, _)) => b"P",
-            Some(_) => b"PLQ",
-            None => b"",
-        };
-        let mut arguments = Vec::new();
-        list.retain(|word| {
-            let taken =
-                !word.comma && (letters.contains(&word.letter) || called.contains(&word.letter));
-            if taken {
-                arguments.push(*word);
-            }
-            !taken
-        });
-        arguments
-    }
-
-    /// Words that depend on what is modal, before the block is carried out.
-    fn before_motion<R: BufRead>(
-        &mut self,
-        list: &mut Vec<Word>,
-        asked: &mut Asked,
-        program: &mut Program<R>,
-    ) -> Result<(), Fault> {
-        if let Some(dwell) = asked.dwell {
-            Self::dwell(dwell, list, program)?;
-        }
-        if let Some(system) = asked.system {
-            self.select_system(system, list, program)?;
-        }
-        if let Some(shift) = asked.shift {
-            self.shift(shift, list, program)?;
-        }
-        let modal = program.lowering.modal.motion;
-        let axis = list
-            .iter()
-            .any(|word| !word.comma && b"XYZ".contains(&word.letter));
-        if asked.end_cycle && asked.motion.is_none() && (modal.is_cycle() || modal == Motion::Off) {
-            program.lowering.modal.motion = self.straight;
-        }
-        let modal = program.lowering.modal.motion;
-        let cycle = match program.block.motion {
-            Some(motion) => motion.is_cycle(),
-            None => modal.is_cycle() && axis,
-        };
-        let arc = program.block.motion.unwrap_or(modal).is_arc();
-        if cycle {
-            Self::cycle_words(list)?;
-        } else if asked.functions && !arc && asked.dwell.is_none() {
-            list.retain(|word| word.comma || !b"PQREL".contains(&word.letter));
-        }
-        self.tool_words(list, asked, program)?;
-        if self.polar.is_some() && !asked.machine && axis {
-            self.straighten(list, program)?;
-        }
-        if let Some(word) = list.iter().find(|word| !word.comma && word.letter == b'E') {
-            let letter = 'E';
-            return Err(Fault::new(word.span, Reason::Unused { letter }));
-        }
-        Ok(())
-    }
-
-    /// Repetitions by `K`, and dwells in ms, as cycles have them.
-    fn cycle_words(list: &mut [Word]) -> Result<(), Fault> {
-        let mut repetitions = None;
-        for word in list.iter_mut().filter(|word| !word.comma) {
-            match word.letter {
-                b'K' | b'L' => {
-                    if let Some(letter) = repetitions.replace(char::from(word.letter)) {
-                        return Err(Fault::new(word.span, Reason::Repeated { letter }));
-                    }
-                    word.letter = b'L';
-                }
-                b'P' => word.value = seconds(word),
-                b'Q' => word.value = word.value.abs(),
-                _ => {}
-            }
-        }
-        Ok(())
-    }
-
-    /// `D` and `H`, which are modal.
-    fn tool_words<R: BufRead>(
-        &mut self,
-        list: &mut Vec<Word>,
-        asked: &Asked,
-        program: &mut Program<R>,
-    ) -> Result<(), Fault> {
-        let state = &program.lowering;
-        if let Some(index) = position(list, b'D') {
-            let word = list[index];
-            self.memory.set_letter(b'D', word.value);
-            if !asked.side {
-                list.remove(index);
-                if state
-                    .compensation
-                    .as_ref()
-                    .is_some_and(|on| !on.is_ending())
-                {
-                    let code = Code::letter(b'D');
-                    let state = crate::once::COMPENSATED;
-                    let reason = MachiningError::NotNow { code, state };
-                    return Err(Fault::new(word.span, reason.into()));
-                }
-            }
-        } else if asked.side {
-            let span = program.block.taker(crate::codes::Group::CutterCompensation);
-            let span = span.map_or(Span::default(), |(_, span)| span);
-            list.push(word_of(b'D', self.memory.letter(b'D'), span));
-        }
-        let given = position(list, b'H');
-        if let Some(index) = given {
-            self.memory.set_letter(b'H', list[index].value);
-        }
-        match (asked.length, self.length, given) {
-            (Some(490), ..) => {
-                self.length = None;
-                if let Some(index) = given {
-                    list.remove(index);
-                }
-            }
-            (Some(code), ..) => {
-                self.length = Some(code);
-                if given.is_none() {
-                    let span = program.block.taker(crate::codes::Group::ToolLength);
-                    let span = span.map_or(Span::default(), |(_, span)| span);
-                    list.push(word_of(b'H', self.memory.letter(b'H'), span));
-                }
-            }
-            // Another length, of the same kind.
-            (None, Some(440), Some(index)) => {
-                let span = list[index].span;
-                program.block.take_against(Code::new(b'G', 440), span)?;
-            }
-            (None, Some(code), Some(index)) => {
-                let span = list[index].span;
-                Self::add(b'G', f64::from(code) / 10.0, span, program)?;
-            }
-            (None, None, Some(index)) => {
-                list.remove(index);
-            }
-            (None, _, None) => {}
-        }
-        Ok(())
-    }
-
-    /// Takes `,R` and `,C`; false for a word without a comma.
-    fn comma_word(word: &Word, block: &mut Block) -> Result<bool, Fault> {
-        if !word.comma {
-            return Ok(false);
-        }
-        let kind = match word.letter {
-            b'R' => CornerKind::Round,
-            b'C' => CornerKind::Chamfer,
-            letter => {
-                let reason = Reason::WordNotSupported {
-                    word: format!(",{}", char::from(letter)).into(),
-                    what: "angles and other words of drawings",
-                };
-                return Err(Fault::new(word.span, reason));
-            }
-        };
-        if block.corner.is_some() {
-            let letter = char::from(word.letter);
-            return Err(Fault::new(word.span, Reason::Repeated { letter }));
-        }
-        block.corner = Some((kind, word.value, word.span));
-        Ok(true)
     }
 
     pub(crate) fn add<R: BufRead>(
@@ -599,16 +221,6 @@ pub(crate) fn axes(list: &[Word]) -> [Option<Word>; 3] {
     AXES.map(|letter| word(list, letter))
 }
 
-fn word_of(letter: u8, value: f64, span: Span) -> Word {
-    Word {
-        letter,
-        comma: false,
-        value,
-        point: false,
-        span,
-    }
-}
-
 /// The duration of a `P` word, s: with a decimal point in s as Haas has it, else in ms.
 pub(crate) fn seconds(word: &Word) -> f64 {
     if word.point {
@@ -616,14 +228,4 @@ pub(crate) fn seconds(word: &Word) -> f64 {
     } else {
         word.value / 1000.0
     }
-}
-
-fn same_group(first: &Taken, second: &Taken, group: &'static str) -> Fault {
-    let (first, code) = (first.code, second.code);
-    let reason = Reason::SameGroup {
-        first,
-        second: code,
-        group,
-    };
-    Fault::new(second.span, reason)
 }

@@ -83,7 +83,13 @@ impl Fanuc {
                 }
                 let end = state.offsets.in_program(there);
                 // Rotary axes turn with a move, even if it leads nowhere.
-                if end == here && program.waiting.is_empty() && state.others.at != turned {
+                let turns = state
+                    .others
+                    .at
+                    .iter()
+                    .zip(&turned)
+                    .any(|(now, before)| (now - before).abs() > 0.0);
+                if end == here && program.waiting.is_empty() && turns {
                     let waiting = &mut program.waiting;
                     return state.go(end, Feedrate::RAPID, taken.span, waiting);
                 }
