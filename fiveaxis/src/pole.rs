@@ -90,6 +90,26 @@ pub(crate) fn parts_at_pole(
     Ok((first, Some(second)))
 }
 
+/// A tool that comes nearer to a pole than this is beside it, rad.
+const BESIDE: f64 = 0.1;
+
+/// Shares of a block at which it is looked for a pole.
+const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+impl PoseBlock {
+    /// Whether the tool comes near to a pole of the machine.
+    pub(crate) fn is_beside_pole(&self, machine: &dyn MachineKinematics) -> bool {
+        // Between two looks the tool turns by no more than to half-way.
+        let near = BESIDE + 0.125 * self.turn.angle();
+        LOOKS.iter().any(|&share| {
+            let tool = self.turn.at(share);
+            machine
+                .pole(&tool)
+                .is_some_and(|pole| angle_between(&pole, &tool) < near)
+        })
+    }
+}
+
 /// An axis that must turn at rest, because the tool does not tell where it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spin {

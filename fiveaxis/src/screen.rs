@@ -19,7 +19,7 @@ const RESERVE: f64 = 2.0;
 
 /// Where blocks turn the tool together by more than this share of its angle to the pole, what they
 /// add together is not of second order any more.
-const BESIDE_POLE: f64 = 0.25;
+const BESIDE_POLE: f64 = 0.02;
 
 /// How two blocks act together.
 #[derive(Clone, Copy, Debug)]

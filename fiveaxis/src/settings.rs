@@ -4,6 +4,7 @@
 
 use crate::error::FiveAxisError;
 use toolglide_fir::FilterChain;
+use toolglide_kinematics::SamplePeriod;
 
 /// How corners of tool poses are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,7 @@ pub struct PoseSettings {
     method: PoseMethod,
     turn_rate: f64,
     keeps_axis_limits: bool,
+    choice: Option<SamplePeriod>,
 }
 
 impl PoseSettings {
@@ -48,6 +50,7 @@ impl PoseSettings {
             method,
             turn_rate: f64::INFINITY,
             keeps_axis_limits: true,
+            choice: None,
         })
     }
 
@@ -67,7 +70,24 @@ impl PoseSettings {
         self
     }
 
-    /// The filters.
+    /// The same, where other filters may be tried than those of the chain: each stretch between two rests keeps
+    /// those with which it is fastest, of time constants that are whole numbers of `period`.
+    ///
+    /// For programs of which nobody says how they are filtered: no option, no machine file, no mode of vibration.
+    /// NS-JCB, which keeps no tolerance, stays with the chain.
+    #[must_use]
+    pub fn choosing_filters(mut self, period: SamplePeriod) -> Self {
+        self.choice = Some(period);
+        self
+    }
+
+    /// Period of which the time constants of other filters are whole numbers; `None` where the chain is asked for.
+    #[must_use]
+    pub fn choice(&self) -> Option<SamplePeriod> {
+        self.choice
+    }
+
+    /// The filters; those tried first where they are chosen.
     #[must_use]
     pub fn chain(&self) -> &FilterChain {
         &self.chain

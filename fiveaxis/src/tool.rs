@@ -9,10 +9,11 @@ use crate::follow::{Worst, worst};
 use crate::lay::piece;
 use crate::relax::{AIM, Stretch};
 use crate::screen::{Mixed, Progress, alone, mixed, together};
-use crate::settings::{PoseMethod, PoseSettings};
+use crate::settings::PoseMethod;
 use crate::steps::Steps;
 use crate::timing::{corners, goes_on, time};
 use crate::way::Way;
+use std::sync::Arc;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, MachineKinematics};
 
@@ -27,9 +28,10 @@ const LEAST_SCALE: f64 = 0.05;
 pub(crate) struct ToolStretch<'a> {
     machine: &'a dyn MachineKinematics,
     axes: &'a [Axis],
-    settings: &'a PoseSettings,
+    chain: &'a FilterChain,
+    method: PoseMethod,
     pub(crate) blocks: Vec<PoseBlock>,
-    pub(crate) ways: Vec<Way>,
+    pub(crate) ways: Vec<Arc<Way>>,
     corners: Vec<PoseCorner>,
     /// How gently each corner is taken, as a share of what the tolerances allow.
     scales: Vec<f64>,
@@ -40,16 +42,17 @@ pub(crate) struct ToolStretch<'a> {
 }
 
 impl<'a> ToolStretch<'a> {
-    /// The blocks in a row, with the way of the axes along each.
+    /// The blocks in a row, with the way of the axes along each; whether they are slowed down within the limits of
+    /// the axes.
     pub(crate) fn new(
         machine: &'a dyn MachineKinematics,
         axes: &'a [Axis],
-        settings: &'a PoseSettings,
-        blocks: Vec<PoseBlock>,
-        ways: Vec<Way>,
+        (chain, method): (&'a FilterChain, PoseMethod),
+        (blocks, ways): (Vec<PoseBlock>, Vec<Arc<Way>>),
+        keeps_limits: bool,
     ) -> Result<Self, FiveAxisError> {
         let corners = corners(&blocks);
-        let mixed = if settings.keeps_axis_limits() {
+        let mixed = if keeps_limits {
             blocks
                 .windows(2)
                 .zip(ways.windows(2))
@@ -61,7 +64,8 @@ impl<'a> ToolStretch<'a> {
         Ok(Self {
             machine,
             axes,
-            settings,
+            chain,
+            method,
             scales: vec![1.0; corners.len()],
             overlaps: vec![0.0; corners.len()],
             corners,
@@ -71,14 +75,10 @@ impl<'a> ToolStretch<'a> {
         })
     }
 
-    fn chain(&self) -> &FilterChain {
-        self.settings.chain()
-    }
-
     /// The scale of a corner after it was taken more gently.
     fn eased(&self, scale: f64, worst: &Worst) -> f64 {
         // As long as two blocks overlap at all, their jerks add up.
-        let adds_up = worst.order == 2 && self.settings.method() == PoseMethod::DwellControlled;
+        let adds_up = worst.order == 2 && self.method == PoseMethod::DwellControlled;
         let eased = scale / worst.share.clamp(LEAST_EASING, MOST_EASING);
         if adds_up || eased < LEAST_SCALE {
             0.0
@@ -95,7 +95,7 @@ impl<'a> ToolStretch<'a> {
         [oldest, newest]: [usize; 2],
     ) -> Option<Worst> {
         let (middle, half) = (0.5 * (begin + end), 0.5 * (end - begin));
-        let progress = |block: usize| Progress::new(steps[block].state(self.chain(), middle), half);
+        let progress = |block: usize| Progress::new(steps[block].state(self.chain, middle), half);
         if oldest == newest {
             let way = self.ways[oldest].known()?;
             Some(alone(self.axes, way, progress(oldest), half))
@@ -116,7 +116,7 @@ impl<'a> ToolStretch<'a> {
         interval: [f64; 2],
         range: [usize; 2],
     ) -> Result<Worst, FiveAxisError> {
-        let chain = self.chain();
+        let chain = self.chain;
         let piece = piece(&self.blocks, steps, chain, interval, range);
         // The axes are near those of the path of the block that is half done.
         let mut near = self.ways[range[0]].first();
@@ -140,8 +140,8 @@ impl Stretch for ToolStretch<'_> {
             &mut self.blocks,
             &self.corners,
             &self.scales,
-            self.settings.method(),
-            self.settings.chain(),
+            self.method,
+            self.chain,
             changed,
             &mut self.overlaps,
         )
@@ -186,11 +186,11 @@ impl Stretch for ToolStretch<'_> {
         }
         let corner = &self.corners[block];
         let lost = scale - self.eased(scale, worst);
-        match self.settings.method() {
-            PoseMethod::DwellControlled => lost * corner.overlap(pair[0], pair[1], self.chain()),
+        match self.method {
+            PoseMethod::DwellControlled => lost * corner.overlap(pair[0], pair[1], self.chain),
             PoseMethod::VelocityControlled => {
-                let shares = pair.map(|block| corner.slow_share(block, self.chain()));
-                0.5 * self.chain().total_delay() * lost * (shares[0] + shares[1])
+                let shares = pair.map(|block| corner.slow_share(block, self.chain));
+                0.5 * self.chain.total_delay() * lost * (shares[0] + shares[1])
             }
             _ => f64::INFINITY,
         }
@@ -231,7 +231,7 @@ mod tests {
 
     fn stretch<'a>(
         machine: &'a dyn MachineKinematics,
-        settings: &'a PoseSettings,
+        how: (&'a FilterChain, PoseMethod),
         step: f64,
     ) -> ToolStretch<'a> {
         let (mut blocks, mut ways) = (Vec::new(), Vec::new());
@@ -252,9 +252,9 @@ mod tests {
             let way = Way::along(&block, machine, &at).unwrap();
             at = *way.last();
             blocks.push(block);
-            ways.push(way);
+            ways.push(Arc::new(way));
         }
-        ToolStretch::new(machine, machine.axes(), settings, blocks, ways).unwrap()
+        ToolStretch::new(machine, machine.axes(), how, (blocks, ways), true).unwrap()
     }
 
     #[test]
@@ -270,8 +270,7 @@ mod tests {
             for method in [PoseMethod::DwellControlled, PoseMethod::VelocityControlled] {
                 for step in [0.03, 0.1, 0.3] {
                     let chain = FilterChain::with_time_constants(&[0.05, 0.025]).unwrap();
-                    let settings = PoseSettings::new(chain.clone(), method).unwrap();
-                    let mut stretch = stretch(machine.as_ref(), &settings, step);
+                    let mut stretch = stretch(machine.as_ref(), (&chain, method), step);
                     let steps = stretch.steps(&[true; 40]);
                     for (interval, range) in intervals(&steps, &knots(&steps, &chain), &chain) {
                         let Some(bound) = stretch.screened(&steps, interval, range) else {

@@ -190,6 +190,11 @@ impl Way {
         all
     }
 
+    /// What the derivatives of each axis are seen to be.
+    pub(crate) fn slopes(&self) -> Vec<Slopes> {
+        self.axes.iter().map(|way| way.seen).collect()
+    }
+
     /// Where the axes are at the start.
     pub(crate) fn first(&self) -> &AxisVector {
         &self.positions[0].1

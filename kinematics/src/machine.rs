@@ -3,14 +3,15 @@
 //! Source: section 5.2 for the map; linear machines of chapters 2 to 4 are the identity. Not here:
 //! machines themselves.
 
-use crate::axis_vector::{AxisVector, Solutions};
+use crate::axis_vector::{AxisVector, MOST_AXES, Solutions};
 use crate::limits::AxisLimits;
-use crate::numeric::ANGLE_SLACK;
+use crate::numeric::{ANGLE_SLACK, LENGTH_SLACK};
 use crate::pose::ToolPose;
 use crate::sample::SamplePeriod;
 use crate::tolerance::Tolerance;
 use crate::vector::Vector;
-use std::f64::consts::{PI, TAU};
+use nalgebra::Matrix3;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use thiserror::Error;
 
 /// What an axis moves in.
@@ -107,6 +108,43 @@ pub trait MachineKinematics: Send + Sync {
         Ok(axes)
     }
 
+    /// Axis positions with every rotary axis as in `near` and the tool tip at `tip`: the linear part of the inverse
+    /// kinematics, which has no branch, no pole and no turn to choose. It does not allocate.
+    ///
+    /// With the rotary axes at rest the tip goes straight and evenly with each linear axis, so that
+    /// [`MachineKinematics::forward`] says it without any knowledge of the structure.
+    ///
+    /// # Errors
+    /// [`KinematicsError::Unreachable`] for a machine that has not three linear axes that span space,
+    /// [`KinematicsError::Travel`] when an axis would be outside its travel, and what
+    /// [`MachineKinematics::forward`] says of `near`.
+    fn place(&self, tip: &Vector<3>, near: &AxisVector) -> Result<AxisVector, KinematicsError> {
+        placed(self.axes(), |axes| self.forward(axes), tip, near)
+    }
+
+    /// Directions in which the tool orientation moves with each rotary axis, for one radian; zero for linear axes.
+    /// Their lengths are the sines of the angles between the tool and the axes.
+    ///
+    /// The orientation goes around a circle with each rotary axis, so that half the difference of two points of
+    /// it a half turn apart is exact. It does not allocate.
+    ///
+    /// # Errors
+    /// What [`MachineKinematics::forward`] says of `at`.
+    fn swings(&self, at: &AxisVector) -> Result<[Vector<3>; MOST_AXES], KinematicsError> {
+        let mut swings = [Vector::zeros(); MOST_AXES];
+        for (axis, limits) in self.axes().iter().enumerate() {
+            if limits.kind != AxisKind::Rotary {
+                continue;
+            }
+            let mut turned = *at;
+            turned[axis] = at[axis] + FRAC_PI_2;
+            let ahead = self.forward(&turned)?.orientation();
+            turned[axis] = at[axis] - FRAC_PI_2;
+            swings[axis] = (ahead - self.forward(&turned)?.orientation()) * 0.5;
+        }
+        Ok(swings)
+    }
+
     /// The pole next to a tool orientation: the orientation at which one axis may stand anywhere, and beside
     /// which it turns the faster the nearer the tool is. `None` for a machine that has none, or does not
     /// say.
@@ -126,6 +164,77 @@ pub trait MachineKinematics: Send + Sync {
     fn solutions(&self, pose: &ToolPose, near: &AxisVector) -> Result<Solutions, KinematicsError> {
         self.inverse(pose, near).map(Solutions::from)
     }
+}
+
+/// By how much a linear axis is moved to see where the tip goes, mm: a power of two, for the rounding.
+const PROBE: f64 = 128.0;
+
+/// How often the tip is brought nearer to where it should be: the first time leaves rounding alone.
+const PLACINGS: u32 = 3;
+
+/// Axis positions with the tip at `tip` and the rotary axes as they are.
+fn placed(
+    axes: &[Axis],
+    forward: impl Fn(&AxisVector) -> Result<ToolPose, KinematicsError>,
+    tip: &Vector<3>,
+    near: &AxisVector,
+) -> Result<AxisVector, KinematicsError> {
+    let unreachable = KinematicsError::Unreachable {
+        reason: "it has not three linear axes that take the tip everywhere",
+    };
+    let mut linear = [0; 3];
+    let mut count = 0;
+    for (index, axis) in axes.iter().enumerate() {
+        if axis.kind == AxisKind::Linear {
+            let Some(place) = linear.get_mut(count) else {
+                return Err(unreachable);
+            };
+            *place = index;
+            count += 1;
+        }
+    }
+    if count < 3 {
+        return Err(unreachable);
+    }
+    let here = forward(near)?.tip();
+    let mut ways = Matrix3::zeros();
+    for (column, &axis) in linear.iter().enumerate() {
+        let mut moved = *near;
+        moved[axis] += PROBE;
+        ways.set_column(column, &((forward(&moved)?.tip() - here) / PROBE));
+    }
+    let Some(inverse) = ways.try_inverse() else {
+        return Err(unreachable);
+    };
+    let mut at = *near;
+    let mut miss = tip - here;
+    for placing in 1..=PLACINGS {
+        let steps = inverse * miss;
+        for (axis, step) in linear.iter().zip(steps.iter()) {
+            at[*axis] += step;
+        }
+        if placing < PLACINGS {
+            miss = tip - forward(&at)?.tip();
+        }
+    }
+    for (axis, &position) in axes.iter().zip(at.iter()) {
+        let slack = match axis.kind {
+            AxisKind::Linear => LENGTH_SLACK,
+            AxisKind::Rotary => ANGLE_SLACK,
+        };
+        if let Some((low, high)) = axis.travel
+            && !(low - slack..=high + slack).contains(&position)
+        {
+            return Err(KinematicsError::Travel {
+                axis: axis.name,
+                kind: axis.kind,
+                position,
+                low,
+                high,
+            });
+        }
+    }
+    Ok(at)
 }
 
 /// Why a machine cannot take a pose or a position.

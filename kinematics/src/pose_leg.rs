@@ -6,6 +6,7 @@
 use crate::axis_vector::AxisVector;
 use crate::error::ToolpathError;
 use crate::great_circle::GreatCircle;
+use crate::machine::{Axis, AxisKind};
 use crate::pose::ToolPose;
 use crate::pose_move::PoseFeed;
 use crate::tolerance::{OrientationTolerance, Tolerance};
@@ -103,6 +104,24 @@ impl PoseLeg {
             PosePath::Tool { tip, .. } => (tip[1] - tip[0]).norm(),
             _ => 0.0,
         }
+    }
+
+    /// How far a straight move of axes goes: the way of the linear axes, mm, and that of the rotary ones, rad; both are
+    /// the root of the sum of squares, and 0 for what is no move of axes.
+    #[must_use]
+    pub fn way_of_axes(&self, axes: &[Axis]) -> (f64, f64) {
+        let PosePath::Axes { start, end } = &self.path else {
+            return (0.0, 0.0);
+        };
+        let of = |kind: AxisKind| {
+            axes.iter()
+                .zip(start.iter().zip(end.iter()))
+                .filter(|(axis, _)| axis.kind == kind)
+                .map(|(_, (start, end))| (end - start).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        (of(AxisKind::Linear), of(AxisKind::Rotary))
     }
 
     /// Angle by which the tool turns, rad; 0 for what is no turn of the tool.

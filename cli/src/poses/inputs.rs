@@ -95,10 +95,10 @@ impl Inputs {
         })
     }
 
-    /// The filters of the run.
-    pub(crate) fn chain(&self, args: &TuningArgs) -> Result<FilterChain, CliError> {
+    /// The filters of the run, or those to begin with where nobody asks for any.
+    pub(crate) fn chain(&self, args: &TuningArgs) -> Result<(FilterChain, bool), CliError> {
         if let Some(chain) = filters::chain(args, &self.setup)? {
-            return Ok(chain);
+            return Ok((chain, true));
         }
         // Time to reach the largest acceleration of the axis that takes longest.
         let second = self
@@ -109,6 +109,7 @@ impl Inputs {
             .fold(0.0, f64::max);
         FilterChain::with_time_constants(&[FIRST_TO_SECOND * second, second])
             .and_then(|chain| chain.rounded_to(self.setup.period))
+            .map(|chain| (chain, false))
             .map_err(CliError::filters(&self.setup.asked))
     }
 

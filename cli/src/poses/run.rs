@@ -54,13 +54,16 @@ pub(crate) fn plan(
         args.poses.turn_about.as_ref(),
         args.period,
     )?;
-    let chain = inputs.chain(&args.tuning)?;
+    let (chain, asked) = inputs.chain(&args.tuning)?;
     let time_constants = chain.time_constants().to_vec();
     let mut settings = PoseSettings::new(chain, method).map_err(|reason| CliError::Option {
         option: "--fir",
         value: format!("{} time constants", time_constants.len()),
         bound: reason.to_string(),
     })?;
+    if !asked {
+        settings = settings.choosing_filters(inputs.setup.period);
+    }
     if let Some(rate) = args.poses.turn_rate {
         settings = settings.with_turn_rate(rate);
     }
@@ -80,7 +83,6 @@ pub(crate) fn plan(
     let done = run.finish(&inputs)?;
     let mut summary = done.summary;
     summary.method = Some(name.to_owned());
-    summary.fir_s = time_constants;
     summary.period_s = Some(inputs.setup.period.seconds());
     done.legs.warn(err);
     if let (Some(drawing), Some(plot)) = (&mut files.drawing, done.plot) {
@@ -240,6 +242,11 @@ impl<'a> Run<'a> {
         let blocks = self.legs.program.blocks();
         let mut summary = PoseSummary::of(&self.legs.name, &inputs.setup, &report, blocks, rows);
         summary.slowed(self.planner.slowdowns());
+        summary.fir_s = self
+            .planner
+            .usual_filters()
+            .map_or_else(Vec::new, |pair| pair.to_vec());
+        summary.fir_varies = !self.planner.has_one_chain();
         summary.planning_time_s = Some(self.planning_time.as_secs_f64());
         Ok(Finished {
             legs: self.legs,

@@ -48,6 +48,8 @@ pub(crate) struct PoseSummary {
     pub(crate) method: Option<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) fir_s: Vec<f64>,
+    /// Whether stretches between rests have other filters than those told, which are used for the longest time.
+    pub(crate) fir_varies: bool,
     pub(crate) cycle_time_s: f64,
     pub(crate) setpoints: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -117,6 +119,7 @@ impl PoseSummary {
             set_points: None,
             method: None,
             fir_s: Vec::new(),
+            fir_varies: false,
             cycle_time_s: report.cycle_time,
             setpoints: set_points,
             period_s: None,
@@ -204,8 +207,13 @@ impl Shown for PoseSummary {
                     .map(|seconds| format!("{:.1}", 1e3 * seconds))
                     .collect();
                 let filters = filters.join(" and ");
+                let most = if self.fir_varies {
+                    ", most of the time"
+                } else {
+                    ""
+                };
                 format!(
-                    "planned by {method} for {}, filters of {filters} ms",
+                    "planned by {method} for {}, filters of {filters} ms{most}",
                     self.machine
                 )
             }

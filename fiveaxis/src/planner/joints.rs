@@ -2,28 +2,34 @@
 //!
 //! Source: section 5.4 for NS-JCB; moves in words of axes. Not here: straight motion itself, see `joint`.
 
+use super::choice::Choice;
+use super::row::Section;
 use super::{NOTABLE, PosePlanner, Slowdown};
-use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::joint::{JointBlock, JointStretch};
 use crate::lay::{intervals, knots};
 use crate::relax::{Stretch, relax};
-use crate::way::Way;
-use toolglide_kinematics::{
-    AxesPiece, Axis, AxisKind, AxisVector, PoseFeed, PoseLeg, PosePath, PosePiece,
-};
+use crate::steps::Steps;
+use toolglide_fir::FilterChain;
+use toolglide_kinematics::{AxesPiece, Axis, PoseFeed, PoseLeg, PosePath, PosePiece};
 
 impl PosePlanner<'_> {
     /// Every axis for itself between the poses of the blocks, and `way_points` between them.
     pub(super) fn plan_joints(
         &mut self,
-        blocks: &[PoseBlock],
-        ways: &[Way],
+        row: &[Section],
         way_points: u32,
     ) -> Result<(), FiveAxisError> {
+        let chain = self.settings.chain().clone();
         let parts = f64::from(way_points) + 1.0;
         let mut joints = Vec::new();
-        for (block, way) in blocks.iter().zip(ways) {
+        for Section { block, way } in row {
+            let mut block = *block;
+            if self.settings.keeps_axis_limits() {
+                let straight = JointBlock::between(&block, *way.first(), *way.last());
+                let (least, _) = straight.least_duration(&self.axes, &chain);
+                block.duration = block.duration.max(least);
+            }
             let mut start = *way.first();
             let mut part = 1.0;
             while part <= parts {
@@ -38,15 +44,15 @@ impl PosePlanner<'_> {
                 } else {
                     *way.last()
                 };
-                let mut joint = JointBlock::between(block, start, end);
+                let mut joint = JointBlock::between(&block, start, end);
                 joint.duration /= parts;
                 joints.push(joint);
                 start = end;
                 part += 1.0;
             }
         }
-        let overlap = self.settings.chain().total_delay();
-        self.lay_joints(joints, overlap)
+        let overlap = chain.total_delay();
+        self.lay_joints(joints, &chain, overlap)
     }
 
     pub(super) fn plan_axes(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
@@ -62,14 +68,14 @@ impl PosePlanner<'_> {
                 end: *end,
                 duration: 0.0,
             };
-            let (least, _) = block.least_duration(&self.axes, self.settings.chain());
             let asked = match leg.feed {
                 PoseFeed::Rapid => 0.0,
                 PoseFeed::Duration(duration) => duration,
-                PoseFeed::Speed(feedrate) => way_length(&self.axes, start, end) / feedrate.speed(),
+                PoseFeed::Speed(feedrate) => way_length(&self.axes, leg) / feedrate.speed(),
             };
-            block.duration = asked.max(least);
-            if block.duration > 0.0 {
+            block.duration = asked;
+            let spans = start.iter().zip(end.iter());
+            if spans.fold(0.0, |most: f64, (start, end)| most.max((end - start).abs())) > 0.0 {
                 joints.push(block);
             }
         }
@@ -83,11 +89,39 @@ impl PosePlanner<'_> {
                         reason,
                     })?;
         }
-        self.lay_joints(joints, 0.0)
+        for mut block in joints {
+            let (chain, least) = self.fastest_chain(&block);
+            block.duration = block.duration.max(least);
+            if block.duration > 0.0 {
+                self.lay_joints(vec![block], &chain, 0.0)?;
+            }
+        }
+        Ok(())
     }
 
-    fn lay_joints(&mut self, blocks: Vec<JointBlock>, overlap: f64) -> Result<(), FiveAxisError> {
-        let chain = self.settings.chain();
+    /// The chain with which a straight move of axes is over first, and how long its pulse lasts at least.
+    fn fastest_chain(&self, block: &JointBlock) -> (FilterChain, f64) {
+        let mut choice = Choice::of_straight(&self.settings, &self.axes, block);
+        let mut best: Option<(FilterChain, f64)> = None;
+        let lasts =
+            |chain: &FilterChain, least: f64| block.duration.max(least) + chain.total_delay();
+        while let Some(chain) = choice.next(None) {
+            let (least, _) = block.least_duration(&self.axes, &chain);
+            let shorter =
+                |(other, bound): &(FilterChain, f64)| lasts(&chain, least) < lasts(other, *bound);
+            if best.as_ref().is_none_or(shorter) {
+                best = Some((chain, least));
+            }
+        }
+        best.unwrap_or_else(|| (self.settings.chain().clone(), 0.0))
+    }
+
+    fn lay_joints(
+        &mut self,
+        blocks: Vec<JointBlock>,
+        chain: &FilterChain,
+        overlap: f64,
+    ) -> Result<(), FiveAxisError> {
         let asked: Vec<_> = blocks.iter().map(|block| block.duration).collect();
         let mut met = vec![None; blocks.len()];
         let mut stretch = JointStretch {
@@ -106,6 +140,8 @@ impl PosePlanner<'_> {
             let piece: AxesPiece = stretch.piece(&steps, interval, range);
             self.pieces.push_back(PosePiece::Axes(piece));
         }
+        let took = steps.last().map_or(0.0, Steps::command_end) + chain.total_delay();
+        self.usage.add(chain, took);
         for ((block, asked), met) in stretch.blocks.iter().zip(asked).zip(met) {
             if let Some(met) = met
                 && block.duration > asked * NOTABLE
@@ -125,19 +161,11 @@ impl PosePlanner<'_> {
 
 /// Length of a straight move of axes for its feedrate: that of the linear axes, mm, or in degrees of
 /// the rotary ones where no linear axis moves.
-fn way_length(axes: &[Axis], start: &AxisVector, end: &AxisVector) -> f64 {
-    let of = |kind: AxisKind| {
-        axes.iter()
-            .zip(start.iter().zip(end.iter()))
-            .filter(|(axis, _)| axis.kind == kind)
-            .map(|(_, (start, end))| (end - start).powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    let linear = of(AxisKind::Linear);
+fn way_length(axes: &[Axis], leg: &PoseLeg) -> f64 {
+    let (linear, rotary) = leg.way_of_axes(axes);
     if linear > 0.0 {
         linear
     } else {
-        of(AxisKind::Rotary).to_degrees()
+        rotary.to_degrees()
     }
 }

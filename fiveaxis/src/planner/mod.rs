@@ -2,8 +2,12 @@
 //!
 //! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
 
+mod choice;
 mod joints;
+mod race;
+mod row;
 mod tool;
+mod usage;
 
 use crate::error::FiveAxisError;
 use crate::lay::rest;
@@ -12,6 +16,7 @@ use std::collections::VecDeque;
 use toolglide_kinematics::{
     Axis, AxisVector, MachineKinematics, PoseLeg, PosePath, PosePiece, ToolPose,
 };
+use usage::Usage;
 
 /// Most legs of a stretch: a longer one is planned in parts that rest in between, so that memory is
 /// bounded. A rest every four thousand moves costs less than a ten-thousandth of the time.
@@ -48,6 +53,7 @@ pub struct PosePlanner<'m> {
     pending: Vec<(u32, PoseLeg)>,
     pieces: VecDeque<PosePiece>,
     slowdowns: Vec<Slowdown>,
+    usage: Usage,
     count: u32,
     finished: bool,
 }
@@ -85,6 +91,7 @@ impl<'m> PosePlanner<'m> {
             pending: Vec::new(),
             pieces: VecDeque::new(),
             slowdowns: Vec::new(),
+            usage: Usage::default(),
             count: 0,
             finished: false,
         })
@@ -139,6 +146,19 @@ impl<'m> PosePlanner<'m> {
     #[must_use]
     pub fn slowdowns(&self) -> &[Slowdown] {
         &self.slowdowns
+    }
+
+    /// Time constants of the filters that the motion passed through for the longest time, s, the longer first; `None`
+    /// before any motion.
+    #[must_use]
+    pub fn usual_filters(&self) -> Option<[f64; 2]> {
+        self.usage.most()
+    }
+
+    /// Whether all motion passed through the same filters.
+    #[must_use]
+    pub fn has_one_chain(&self) -> bool {
+        self.usage.is_one()
     }
 
     fn plan(&mut self) -> Result<(), FiveAxisError> {

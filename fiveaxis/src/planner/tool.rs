@@ -2,56 +2,52 @@
 //!
 //! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
 
+use super::race::{Contender, Race};
+use super::row::Section;
 use super::{NOTABLE, PosePlanner, Slowdown};
 use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
-use crate::joint::JointBlock;
-use crate::lay::{intervals, knots, piece};
 use crate::pole::{Spin, parts_at_pole};
-use crate::relax::{Stretch, relax};
 use crate::settings::PoseMethod;
 use crate::timing::goes_on;
-use crate::tool::ToolStretch;
 use crate::way::Way;
-use toolglide_kinematics::{PoseLeg, PosePiece};
+use std::sync::Arc;
+use toolglide_kinematics::PoseLeg;
 
 /// A turn in place is commanded for at least this share of the delay of the chain, which takes the time.
 const LEAST_TURN: f64 = 0.01;
 
-/// Blocks in a row between two rests, with what was asked of each.
-#[derive(Default)]
-struct Row {
-    blocks: Vec<PoseBlock>,
-    ways: Vec<Way>,
-    asked: Vec<f64>,
-    met: Vec<Option<Worst>>,
-}
-
 impl PosePlanner<'_> {
     pub(super) fn plan_tool(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
-        let mut row = Row::default();
+        let mut row = Vec::new();
         for (number, leg) in legs {
             let Some(block) = PoseBlock::of(leg, *number, self.settings.turn_rate()) else {
                 continue;
             };
             if self.goes_straight() {
                 let way = Way::along(&block, self.machine, &self.at)?;
-                self.take(&mut row, block, way)?;
+                self.take(&mut row, block, way);
                 continue;
             }
             let (first, second) = parts_at_pole(&block, self.machine)?;
             for part in [Some(first), second].into_iter().flatten() {
                 let way = self.way(&part, &mut row)?;
-                self.take_parts(&mut row, part, way)?;
+                self.take(&mut row, part, way);
             }
         }
         self.plan_row(row)
     }
 
+    fn take(&mut self, row: &mut Vec<Section>, block: PoseBlock, way: Way) {
+        self.at = *way.last();
+        let way = Arc::new(way);
+        row.push(Section { block, way });
+    }
+
     /// The way along a block from where the axes are. Where one of them must turn at rest before, the row so
     /// far and that turn are planned.
-    fn way(&mut self, block: &PoseBlock, row: &mut Row) -> Result<Way, FiveAxisError> {
+    fn way(&mut self, block: &PoseBlock, row: &mut Vec<Section>) -> Result<Way, FiveAxisError> {
         let spin = match Spin::before(block, self.machine, &self.at)? {
             (Some(way), _) => return Ok(way),
             (None, spin) => spin,
@@ -61,8 +57,8 @@ impl PosePlanner<'_> {
             for mut turn in spin.blocks(block, self.machine)? {
                 turn.duration = LEAST_TURN * self.settings.chain().total_delay();
                 let way = Way::along(&turn, self.machine, &self.at)?;
-                let mut alone = Row::default();
-                self.take(&mut alone, turn, way)?;
+                let mut alone = Vec::new();
+                self.take(&mut alone, turn, way);
                 self.plan_row(alone)?;
             }
         }
@@ -74,91 +70,30 @@ impl PosePlanner<'_> {
         matches!(self.settings.method(), PoseMethod::JointSpace { .. })
     }
 
-    /// Adds a block to a row: whole, or in parts where one must be much slower than the others.
-    fn take_parts(
-        &mut self,
-        row: &mut Row,
-        block: PoseBlock,
-        way: Way,
-    ) -> Result<(), FiveAxisError> {
-        let cuts = if self.settings.keeps_axis_limits() {
-            way.cuts(&self.axes, block.duration, self.settings.chain())
-        } else {
-            Vec::new()
-        };
-        if cuts.is_empty() {
-            return self.take(row, block, way);
-        }
-        let mut begin = 0.0;
-        for end in cuts.into_iter().chain([1.0]) {
-            let part = block.part(begin, end);
-            let way = Way::along(&part, self.machine, &self.at)?;
-            self.take(row, part, way)?;
-            begin = end;
-        }
-        Ok(())
-    }
-
-    /// Adds a block to a row, slowed down as far as it needs by itself.
-    fn take(&mut self, row: &mut Row, mut block: PoseBlock, way: Way) -> Result<(), FiveAxisError> {
-        row.asked.push(block.duration);
-        self.at = *way.last();
-        let mut limit = None;
-        if self.settings.keeps_axis_limits() {
-            let (axes, chain) = (&self.axes, self.settings.chain());
-            let (least, by) = if self.goes_straight() {
-                JointBlock::between(&block, *way.first(), *way.last()).least_duration(axes, chain)
-            } else {
-                way.least_duration(axes, chain)
-            };
-            if least > block.duration {
-                block.duration = least;
-                limit = Some(by);
-            }
-        }
-        row.met.push(limit);
-        if !(block.duration > 0.0 && block.duration.is_finite()) {
-            return Err(FiveAxisError::NoRate { index: block.leg });
-        }
-        row.blocks.push(block);
-        row.ways.push(way);
-        Ok(())
-    }
-
-    fn plan_row(&mut self, row: Row) -> Result<(), FiveAxisError> {
-        let Row {
-            blocks,
-            ways,
-            asked,
-            mut met,
-        } = row;
-        let Some(last) = blocks.last() else {
+    fn plan_row(&mut self, row: Vec<Section>) -> Result<(), FiveAxisError> {
+        let Some(last) = row.last() else {
             return Ok(());
         };
-        self.pose = last.pose(1.0)?;
+        self.pose = last.block.pose(1.0)?;
         if let PoseMethod::JointSpace { way_points } = self.settings.method() {
-            return self.plan_joints(&blocks, &ways, way_points);
+            return self.plan_joints(&row, way_points);
         }
-        let (count, chain) = (blocks.len(), self.settings.chain());
-        let mut stretch = ToolStretch::new(self.machine, &self.axes, &self.settings, blocks, ways)?;
-        let steps = if self.settings.keeps_axis_limits() {
-            relax(&mut stretch, chain, &self.axes, &mut met)?
-        } else {
-            stretch.steps(&vec![true; count])
+        let race = Race {
+            machine: self.machine,
+            axes: &self.axes,
+            settings: &self.settings,
         };
-        let knots = knots(&steps, chain);
-        for (interval, range) in intervals(&steps, &knots, chain) {
-            self.pieces.push_back(PosePiece::Tool(piece(
-                &stretch.blocks,
-                &steps,
-                chain,
-                interval,
-                range,
-            )));
+        for won in race.run(&row)? {
+            self.lay(&won);
         }
-        let blocks = stretch.blocks;
-        self.note(&blocks, &asked, &met);
         Ok(())
+    }
+
+    /// Makes pieces of a motion from rest to rest.
+    fn lay(&mut self, won: &Contender) {
+        self.pieces.extend(won.pieces());
+        self.usage.add(&won.chain, won.duration());
+        self.note(&won.blocks, &won.asked, &won.met);
     }
 
     /// Notes the moves that are slower than they were asked to be.

@@ -10,7 +10,7 @@ use crate::great_circle::angle_between;
 use crate::numeric::LIMIT_SLACK;
 use crate::pose::ToolPose;
 use crate::pose_leg::PosePath;
-use crate::pose_piece::{PosePiece, ToolPiece};
+use crate::pose_piece::{AxesPiece, PosePiece, ToolPiece};
 
 /// Lengths of an orientation may differ from 1 by this.
 const UNIT_SLACK: f64 = 1e-14;
@@ -171,6 +171,27 @@ impl PoseJudge<'_> {
         }
     }
 
+    /// Notes how fast the tool tip is while the axes go straight. No feedrate of the tip is asked for then.
+    pub(super) fn see_speed(&mut self, moved: &AxesPiece, first: u32) {
+        let (machine, place) = (self.follower.machine, self.route.place(first));
+        let mut position = moved.end;
+        let half = GLANCE * moved.duration;
+        let mut tip = |time: f64| {
+            moved.at(time, &mut position);
+            machine.forward(&position).ok().map(|pose| pose.tip())
+        };
+        for step in 0..=SPEEDS {
+            let time = moved.duration * f64::from(step) / f64::from(SPEEDS);
+            let time = time.max(half).min(moved.duration - half);
+            if let (Some(before), Some(after)) = (tip(time - half), tip(time + half))
+                && half > 0.0
+            {
+                let speed = (after - before).norm() / (2.0 * half);
+                self.report.peak_speed.raise(speed, self.time + time, place);
+            }
+        }
+    }
+
     pub(super) fn judge_speed(&mut self, piece: &ToolPiece, first: u32, last: u32) {
         let mut feedrate: f64 = 0.0;
         self.route.each(first, last, |_, leg| {
@@ -194,6 +215,13 @@ impl PoseJudge<'_> {
         }
     }
 }
+
+/// Instants at which the speed of the tool tip is looked at while axes go straight.
+const SPEEDS: u32 = 16;
+
+/// Half of the time over which it is seen, as a share of the duration of a piece: small enough for the tip to go straight,
+/// large enough for the rounding of positions.
+const GLANCE: f64 = 1e-3;
 
 /// Largest distance of an axis from a straight move of all axes.
 pub(super) fn from_straight(position: &[f64], start: &[f64], end: &[f64]) -> f64 {

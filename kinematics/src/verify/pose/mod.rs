@@ -16,7 +16,7 @@ mod set_points;
 pub use report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
 pub use set_points::PoseSetPointJudge;
 
-use super::report::Peak;
+use super::report::{Peak, Place};
 use crate::axis_vector::AxisVector;
 use crate::machine::{Axis, MachineKinematics};
 use crate::piece::Serves;
@@ -37,6 +37,26 @@ const JUMP_SHARE: f64 = 1e-3;
 
 /// How far axes may leave a straight move of axes, mm and rad.
 const STRAIGHT_SLACK: f64 = 1e-6;
+
+/// Whether pieces of motion, which begin at rest at the axis positions `start`, keep the limits and the travel of every
+/// axis, as [`PoseJudge`] sees it; tolerances and feedrates are not looked at.
+#[must_use]
+pub fn keeps_axis_limits<'p>(
+    machine: &dyn MachineKinematics,
+    axes: &[Axis],
+    start: &AxisVector,
+    pieces: impl IntoIterator<Item = &'p PosePiece>,
+) -> bool {
+    let mut judge = PoseJudge::new(machine, axes.to_vec(), start);
+    for piece in pieces {
+        judge.judge_axes(piece, Place::default());
+        judge.time += piece.duration();
+        if !judge.report.passes() {
+            return false;
+        }
+    }
+    true
+}
 
 /// Judges a motion of poses piece by piece while it is planned.
 ///
@@ -101,8 +121,9 @@ impl<'m> PoseJudge<'m> {
 
     /// Takes the next leg of the path.
     pub fn expect(&mut self, leg: &PoseLeg) {
-        self.report.path_length += leg.length();
-        self.report.path_angle += leg.angle();
+        let (linear, rotary) = leg.way_of_axes(&self.follower.axes);
+        self.report.path_length += leg.length() + linear;
+        self.report.path_angle += leg.angle() + rotary;
         self.route.expect(leg.clone());
     }
 
@@ -124,6 +145,7 @@ impl<'m> PoseJudge<'m> {
             PosePiece::Tool(tool) => self.judge_tool(tool, first, last),
             PosePiece::Axes(moved) => {
                 let machine = self.follower.machine;
+                self.see_speed(moved, first);
                 let mut position = moved.end;
                 let mut pose = |time: f64| {
                     moved.at(time, &mut position);

@@ -31,9 +31,9 @@ pub struct AxisPeaks {
 pub struct PoseReport {
     /// How long the motion lasts.
     pub cycle_time: f64,
-    /// Length of the path of the tool tip.
+    /// Length of the path of the tool tip, mm; of a straight move of axes that of its linear axes.
     pub path_length: f64,
-    /// Sum of the angles by which the tool turns, rad.
+    /// Sum of the angles by which the tool turns, rad; of a straight move of axes those of its rotary axes.
     pub path_angle: f64,
     /// How many moves the path has.
     pub moves: u32,

@@ -106,8 +106,9 @@ impl<'m> PoseSetPointJudge<'m> {
 
     /// Takes the next leg of the path; all of them before the first row.
     pub fn expect(&mut self, leg: &PoseLeg) {
-        self.report.path_length += leg.length();
-        self.report.path_angle += leg.angle();
+        let (linear, rotary) = leg.way_of_axes(&self.axes);
+        self.report.path_length += leg.length() + linear;
+        self.report.path_angle += leg.angle() + rotary;
         let place = Place {
             mv: self.moves,
             line: leg.line,
