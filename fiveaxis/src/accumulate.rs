@@ -183,7 +183,7 @@ impl Run<'_> {
                 for side in [index, index + 1] {
                     let block = &blocks[side];
                     let least = (block.length / (corner.tip / gone))
-                        .max(block.turn.angle() / (corner.orientation / gone));
+                        .max(block.turn.amount() / (corner.orientation / gone));
                     durations[side] = durations[side].max(least);
                 }
             }
@@ -203,7 +203,7 @@ impl Run<'_> {
                 durations: &durations,
             };
             let tip: Vec<f64> = blocks.iter().map(|block| block.length).collect();
-            let turn: Vec<f64> = blocks.iter().map(|block| block.turn.angle()).collect();
+            let turn: Vec<f64> = blocks.iter().map(|block| block.turn.amount()).collect();
             let mut worst: f64 = 0.0;
             let channels: [(&[f64], Turning); 2] = [
                 (&tip, |corner| (corner.tip_turn, corner.tip_tolerance)),

@@ -3,7 +3,8 @@
 //! Source: section 5.2, equations 5.6 to 5.9: tip and orientation share the duration of the slower
 //! one; inverse-time feed gives the duration itself. Not here: corners.
 
-use toolglide_kinematics::{GreatCircle, PoseFeed, PoseLeg, PosePath, Vector};
+use crate::swing::{RotarySwing, Swing};
+use toolglide_kinematics::{PoseFeed, PoseLeg, PosePath, Vector};
 
 /// A line of the tip and a turn of the tool that take the same time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +20,7 @@ pub struct PoseBlock {
     /// Length of the line.
     pub length: f64,
     /// The turn of the tool.
-    pub turn: GreatCircle,
+    pub turn: Swing,
     /// How long the commanded pulse lasts, s; 0 where nothing but axis limits bounds it.
     pub duration: f64,
     /// Tolerance of the tip, mm.
@@ -36,11 +37,14 @@ impl PoseBlock {
     /// Equations 5.8 and 5.9: the longer of the duration by feedrate and that by turn rate.
     #[must_use]
     pub fn of(leg: &PoseLeg, number: u32, turn_rate: f64) -> Option<Self> {
-        let PosePath::Tool { tip, turn } = &leg.path else {
-            return None;
+        let turn = match &leg.path {
+            PosePath::Tool { turn, .. } => Swing::Circle(*turn),
+            PosePath::Rotary { axes, .. } => Swing::Rotary(RotarySwing::new(axes)),
+            _ => return None,
         };
-        let (length, angle) = (leg.length(), turn.angle());
-        if length <= toolglide_kinematics::numeric::SHORTEST_LENGTH && angle <= 0.0 {
+        let tip = leg.tip()?;
+        let (length, angle) = (leg.length(), leg.angle());
+        if length <= toolglide_kinematics::numeric::SHORTEST_LENGTH && turn.amount() <= 0.0 {
             return None;
         }
         let by_feed = match leg.feed {
@@ -54,7 +58,7 @@ impl PoseBlock {
             start: tip[0],
             end: tip[1],
             length,
-            turn: *turn,
+            turn,
             duration: by_feed.max(angle / turn_rate),
             tip_tolerance: leg.tip_tolerance.length(),
             orientation_tolerance: leg.orientation_tolerance.angle(),
@@ -67,9 +71,9 @@ impl PoseBlock {
         self.length / self.duration
     }
 
-    /// Rate at which the tool turns, rad/s.
+    /// Rate at which the tool turns, rad/s; of rotary axes a bound of it.
     #[must_use]
     pub fn turn_rate(&self) -> f64 {
-        self.turn.angle() / self.duration
+        self.turn.amount() / self.duration
     }
 }

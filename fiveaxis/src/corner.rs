@@ -19,7 +19,7 @@ pub struct PoseCorner {
     pub orientation: f64,
     /// Twice the sine of half the turn of the tip.
     pub tip_turn: f64,
-    /// Twice the sine of half the turn of the axis about which the tool turns.
+    /// Twice the sine of half the turn of the axis about which the tool turns, or of the way of the rotary axes.
     pub orientation_turn: f64,
     /// Tolerance of the tip at the corner, mm.
     pub tip_tolerance: f64,
@@ -80,14 +80,15 @@ impl PoseCorner {
         let orientation_tolerance = before
             .orientation_tolerance
             .min(after.orientation_tolerance);
-        let orientation_turn = if before.turn.angle() > 0.0 && after.turn.angle() > 0.0 {
-            turn_between(&before.turn.axis(), &after.turn.axis())
+        let orientation_turn = after.turn.turn_from(&before.turn);
+        let orientation = if after.turn.rotary().is_some() {
+            orientation_tolerance / orientation_turn
         } else {
-            0.0
+            orientation_reach(orientation_tolerance, orientation_turn)
         };
         Self {
             tip: tip_tolerance / tip_turn,
-            orientation: orientation_reach(orientation_tolerance, orientation_turn),
+            orientation,
             tip_turn,
             orientation_turn,
             tip_tolerance,

@@ -58,16 +58,9 @@ impl Way {
 impl PoseBlock {
     /// The part of the block from one share of it to another.
     pub(crate) fn part(&self, from: f64, to: f64) -> Self {
-        let at = |share: f64| {
-            if share >= 1.0 {
-                self.end
-            } else {
-                self.start + (self.end - self.start) * share
-            }
-        };
         Self {
-            start: at(from),
-            end: at(to),
+            start: self.tip(from),
+            end: self.tip(to),
             length: self.length * (to - from),
             turn: self.turn.part(from, to),
             duration: self.duration * (to - from),

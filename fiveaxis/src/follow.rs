@@ -7,7 +7,7 @@
 
 use crate::series::{AT_NODES, NODES, bound, falls, last, slope, through_nodes, value};
 use toolglide_kinematics::{
-    Axis, AxisVector, KinematicsError, MOST_AXES, MachineKinematics, ToolPiece,
+    Axis, AxisVector, KinematicsError, MOST_AXES, MachineKinematics, PosePiece,
 };
 
 /// Shorter stretches are interpolated beyond their ends, s: the rounding of positions of a metre leaves
@@ -74,7 +74,7 @@ pub(crate) fn bounds(axis: &Axis) -> [f64; 3] {
 pub(crate) fn worst(
     machine: &dyn MachineKinematics,
     axes: &[Axis],
-    piece: &ToolPiece,
+    piece: &PosePiece,
     near: &AxisVector,
 ) -> Result<Worst, KinematicsError> {
     let mut look = Look {
@@ -84,7 +84,7 @@ pub(crate) fn worst(
         near: *near,
         worst: Worst::NONE,
     };
-    look.stretch([0.0, piece.duration], LEAST_HALF)?;
+    look.stretch([0.0, piece.duration()], LEAST_HALF)?;
     Ok(look.worst)
 }
 
@@ -92,7 +92,7 @@ pub(crate) fn worst(
 struct Look<'a> {
     machine: &'a dyn MachineKinematics,
     axes: &'a [Axis],
-    piece: &'a ToolPiece,
+    piece: &'a PosePiece,
     near: AxisVector,
     worst: Worst,
 }
@@ -113,13 +113,12 @@ impl Look<'_> {
         let mut near = before;
         for (node, at) in AT_NODES.iter().enumerate() {
             let time = middle + half * at;
-            let pose = self.piece.extended(time);
-            near = match self.machine.follow(&pose, &near) {
+            near = match self.piece.extended(time, self.machine, &near) {
                 Ok(next) => next,
                 // Looked at too rarely, an axis beside a pole may seem to turn the other way.
                 Err(_) if end - begin > SHORTEST => return self.halves([begin, middle, end]),
                 // Beyond the ends of the piece the machine need not get anywhere.
-                Err(_) if !(0.0..=self.piece.duration).contains(&time) => {
+                Err(_) if !(0.0..=self.piece.duration()).contains(&time) => {
                     return self.stretch([begin, end], 0.5 * least);
                 }
                 Err(reason) => return Err(reason),

@@ -7,9 +7,11 @@
 
 use crate::block::PoseBlock;
 use crate::steps::Steps;
+use crate::swing::{RotarySwing, Swing};
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{
-    CubicInTime, PosePiece, Sample, Serves, ToolPiece, ToolPose, Turn, Vector,
+    Axis, AxisKind, AxisVector, CubicInTime, PosePiece, RotaryPiece, Sample, Serves, ToolPiece,
+    ToolPose, Turn, Vector,
 };
 
 /// Knots nearer than this are one, s: what the motion does between them is below every rounding.
@@ -68,13 +70,15 @@ pub(crate) fn intervals<'a>(
 /// The piece of tool motion in one interval, with the blocks that are under way.
 pub(crate) fn piece(
     blocks: &[PoseBlock],
+    kinds: &[Axis],
     steps: &[Steps],
     chain: &FilterChain,
     [begin, end]: [f64; 2],
     [oldest, newest]: [usize; 2],
-) -> ToolPiece {
+) -> PosePiece {
     let mut tip = Sample::at_rest(blocks[oldest].start);
     let mut turns = Vec::with_capacity(newest + 1 - oldest);
+    let mut rotary = Rotary::of(&blocks[oldest], kinds);
     let inside = 0.5 * (begin + end);
     for (block, steps) in blocks[oldest..=newest].iter().zip(&steps[oldest..=newest]) {
         let progress = steps.cubic(chain, begin, inside);
@@ -83,30 +87,93 @@ pub(crate) fn piece(
         tip.velocity += span * progress[1];
         tip.acceleration += span * (2.0 * progress[2]);
         tip.jerk += span * (6.0 * progress[3]);
-        if block.turn.angle() > 0.0 {
-            turns.push(Turn {
-                axis: block.turn.axis(),
-                angle: scaled(&progress, block.turn.angle()),
-            });
+        match &block.turn {
+            Swing::Circle(turn) if turn.angle() > 0.0 => turns.push(Turn {
+                axis: turn.axis(),
+                angle: scaled(&progress, turn.angle()),
+            }),
+            Swing::Circle(_) => {}
+            Swing::Rotary(swing) => rotary.add(swing, &progress),
         }
     }
     let last = &blocks[newest];
     let over = steps[newest].command_end() + chain.total_delay() <= end + SAME_KNOT;
+    let duration = end - begin;
+    let serves = Serves {
+        first: blocks[oldest].leg,
+        last: last.leg,
+    };
+    let turn = match (&blocks[oldest].turn, &last.turn) {
+        (Swing::Circle(first), Swing::Circle(last)) => (first.start(), last.end()),
+        (_, last) => return rotary.piece(tip, (last, over), blocks[newest].end, duration, serves),
+    };
     let mut piece = ToolPiece {
         tip,
-        base: blocks[oldest].turn.start(),
+        base: turn.0,
         turns,
-        end: pose(last.end, last.turn.end()),
-        duration: end - begin,
-        serves: Serves {
-            first: blocks[oldest].leg,
-            last: last.leg,
-        },
+        end: pose(last.end, turn.1),
+        duration,
+        serves,
     };
     if !over {
         piece.end = piece.extended(piece.duration);
     }
-    piece
+    PosePiece::Tool(piece)
+}
+
+/// Rotary axes against time, as they are added up.
+struct Rotary {
+    cubics: Vec<Option<CubicInTime>>,
+}
+
+impl Rotary {
+    fn of(first: &PoseBlock, kinds: &[Axis]) -> Self {
+        let Some(swing) = first.turn.rotary() else {
+            return Self { cubics: Vec::new() };
+        };
+        let axes = kinds.iter().zip(swing.start().iter());
+        Self {
+            cubics: axes
+                .map(|(axis, &start)| {
+                    (axis.kind == AxisKind::Rotary).then_some([start, 0.0, 0.0, 0.0])
+                })
+                .collect(),
+        }
+    }
+
+    fn add(&mut self, swing: &RotarySwing, progress: &CubicInTime) {
+        for (cubic, span) in self.cubics.iter_mut().zip(swing.spans()) {
+            if let Some(cubic) = cubic {
+                for (sum, part) in cubic.iter_mut().zip(scaled(progress, span)) {
+                    *sum += part;
+                }
+            }
+        }
+    }
+
+    fn piece(
+        self,
+        tip: Sample<3>,
+        (last, over): (&Swing, bool),
+        end_tip: Vector<3>,
+        duration: f64,
+        serves: Serves,
+    ) -> PosePiece {
+        let mut piece = RotaryPiece {
+            tip,
+            end: last
+                .rotary()
+                .map_or(AxisVector::zeros(self.cubics.len()), |swing| swing.at(1.0)),
+            rotary: self.cubics,
+            end_tip,
+            duration,
+            serves,
+        };
+        if !over {
+            (piece.end_tip, piece.end) = piece.extended(duration, &piece.end);
+        }
+        PosePiece::Rotary(piece)
+    }
 }
 
 /// A piece of standing still.

@@ -7,6 +7,7 @@
 
 use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
+use crate::swing::Swing;
 use crate::way::Way;
 use toolglide_kinematics::{
     Axis, AxisKind, AxisVector, GreatCircle, MachineKinematics, OrientationTolerance, ToolPose,
@@ -58,9 +59,12 @@ pub(crate) fn parts_at_pole(
     machine: &dyn MachineKinematics,
 ) -> Result<(PoseBlock, Option<PoseBlock>), FiveAxisError> {
     let whole = Ok((*block, None));
-    let (start, end, axis) = (block.turn.start(), block.turn.end(), block.turn.axis());
+    let Some(turn) = block.turn.circle() else {
+        return whole;
+    };
+    let (start, end, axis) = (turn.start(), turn.end(), turn.axis());
     let near = AT_POLE.min(AT_POLE_SHARE * block.orientation_tolerance);
-    let Some(pole) = machine.pole(&block.turn.at(0.5)) else {
+    let Some(pole) = machine.pole(&turn.at(0.5)) else {
         return whole;
     };
     let miss = axis.dot(&pole).abs();
@@ -80,11 +84,11 @@ pub(crate) fn parts_at_pole(
     })?;
     let share = to.angle() / (to.angle() + from.angle());
     let first = PoseBlock {
-        turn: to,
+        turn: Swing::Circle(to),
         ..block.part(0.0, share)
     };
     let second = PoseBlock {
-        turn: from,
+        turn: Swing::Circle(from),
         ..block.part(share, 1.0)
     };
     Ok((first, Some(second)))
@@ -99,10 +103,14 @@ const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 impl PoseBlock {
     /// Whether the tool comes near to a pole of the machine.
     pub(crate) fn is_beside_pole(&self, machine: &dyn MachineKinematics) -> bool {
+        // Axes whose positions are given pass a pole like any other place.
+        let Some(turn) = self.turn.circle() else {
+            return false;
+        };
         // Between two looks the tool turns by no more than to half-way.
-        let near = BESIDE + 0.125 * self.turn.angle();
+        let near = BESIDE + 0.125 * turn.angle();
         LOOKS.iter().any(|&share| {
-            let tool = self.turn.at(share);
+            let tool = turn.at(share);
             machine
                 .pole(&tool)
                 .is_some_and(|pole| angle_between(&pole, &tool) < near)
@@ -130,22 +138,31 @@ impl Spin {
         at: &AxisVector,
     ) -> Result<(Option<Way>, Option<Self>), FiveAxisError> {
         let way = Way::along(block, machine, at);
-        let start = block.turn.start();
+        let Some(turn) = block.turn.circle() else {
+            return way.map(|way| (Some(way), None));
+        };
+        let start = turn.start();
         let at_pole = machine
             .pole(&start)
             .is_some_and(|pole| angle_between(&pole, &start) < THROUGH);
         match way {
             Ok(way) if way.known().is_some() && !at_pole => return Ok((Some(way), None)),
-            _ if block.turn.angle() <= 0.0 => return way.map(|way| (Some(way), None)),
+            _ if turn.angle() <= 0.0 => return way.map(|way| (Some(way), None)),
             _ => {}
         }
         let refused = |reason| FiveAxisError::Machine {
             index: block.leg,
             reason,
         };
-        let start = block.pose(0.0)?;
+        let pose = |share: f64| {
+            ToolPose::new(block.tip(share), turn.at(share)).map_err(|reason| FiveAxisError::Path {
+                index: block.leg,
+                reason,
+            })
+        };
+        let start = pose(0.0)?;
         let from = machine.follow(&start, at).map_err(refused)?;
-        let leaving = block.pose((PROBE / block.turn.angle()).min(1.0))?;
+        let leaving = pose((PROBE / turn.angle()).min(1.0))?;
         let beyond = machine.inverse(&leaving, &from).map_err(refused)?;
         let to = machine.inverse(&start, &beyond).map_err(refused)?;
         let axes = machine.axes();
@@ -189,7 +206,11 @@ impl Spin {
     }
 
     fn refused(&self, block: &PoseBlock, axes: &[Axis]) -> FiveAxisError {
-        let (tip, tool) = (block.start, block.turn.start());
+        let tool = block
+            .turn
+            .circle()
+            .map_or_else(Vector::<3>::z, GreatCircle::start);
+        let tip = block.start;
         FiveAxisError::Pole {
             index: block.leg,
             axis: axes[self.axis].name,
@@ -209,7 +230,10 @@ impl Spin {
         let axes = machine.axes();
         let refused = || self.refused(block, axes);
         let lean = (LEAN * block.orientation_tolerance).min(MOST_LEAN);
-        let upright = block.turn.start();
+        let upright = block
+            .turn
+            .circle()
+            .map_or_else(Vector::<3>::z, GreatCircle::start);
         let tool = |axes: &AxisVector| {
             machine
                 .forward(axes)
@@ -245,7 +269,7 @@ impl Spin {
             end: block.start,
             length: 0.0,
             duration: 0.0,
-            turn,
+            turn: Swing::Circle(turn),
             ..*block
         };
         let circles = || {

@@ -13,6 +13,10 @@ use toolglide_kinematics::{
     PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath, ToolPose, ToolpathError, Vector, angle_between,
 };
 
+/// The angle that a tool sweeps is added up over turns of the axes of so much, rad, or so many of them.
+const SWEPT: f64 = 0.01;
+const MOST_SWEPT: f64 = 4096.0;
+
 /// Turns moves into legs, one after the other.
 pub struct Resolver<'m> {
     machine: &'m dyn MachineKinematics,
@@ -78,11 +82,12 @@ impl<'m> Resolver<'m> {
         self.count = self.count.saturating_add(1);
         let path = |reason| FiveAxisError::Path { index, reason };
         let machine = |reason| FiveAxisError::Machine { index, reason };
+        let within = self.orientation_tolerance;
         let leg = |path| PoseLeg {
             path,
             feed: next.feed(),
             tip_tolerance: next.tolerance(),
-            orientation_tolerance: self.orientation_tolerance,
+            orientation_tolerance: within,
             stop: next.stops(),
             line: next.line(),
         };
@@ -103,8 +108,12 @@ impl<'m> Resolver<'m> {
                 linear,
                 rotary,
                 tip,
+                great_circle,
             } if tip || !has_linear => {
                 let near = self.words(index, None, rotary, next.secondary())?;
+                if !great_circle && let Some(axes) = self.placed(&linear, &near).map_err(machine)? {
+                    return self.rotary(index, (linear, axes), next.feed(), leg);
+                }
                 let tool = self.machine.forward(&near).map_err(machine)?.orientation();
                 let pose = ToolPose::new(linear, tool).map_err(path)?;
                 let axes = self.machine.inverse(&pose, &near).map_err(machine)?;
@@ -155,6 +164,79 @@ impl<'m> Resolver<'m> {
         Ok(made)
     }
 
+    /// Axis positions with the tip there and the rotary axes as in `near`; `None` for a machine of which these are not
+    /// independent.
+    fn placed(
+        &self,
+        tip: &Vector<3>,
+        near: &AxisVector,
+    ) -> Result<Option<AxisVector>, KinematicsError> {
+        self.check_travel(near)?;
+        match self.machine.place(tip, near) {
+            Err(KinematicsError::Unreachable { .. }) => Ok(None),
+            placed => placed.map(Some),
+        }
+    }
+
+    /// A leg of which the words say how far the rotary axes turn.
+    fn rotary(
+        &mut self,
+        index: u32,
+        (tip, axes): (Vector<3>, AxisVector),
+        feed: PoseFeed,
+        leg: impl Fn(PosePath) -> PoseLeg,
+    ) -> Result<PoseLeg, FiveAxisError> {
+        let start = std::mem::replace(&mut self.at, axes);
+        let refused = |reason| FiveAxisError::Machine { index, reason };
+        let tool = self.machine.forward(&axes).map_err(refused)?;
+        let pose = ToolPose::new(tip, tool.orientation());
+        let pose = pose.map_err(|reason| FiveAxisError::Path { index, reason })?;
+        let before = std::mem::replace(&mut self.pose, pose);
+        // A rapid goes straight on all axes: whoever programs one wants to be there, and a table unwinds.
+        if feed == PoseFeed::Rapid && self.turned(&start, &axes) {
+            return Ok(leg(PosePath::Axes { start, end: axes }));
+        }
+        let only_rotary = |at: &AxisVector| {
+            let mut at = *at;
+            for (position, axis) in at.iter_mut().zip(self.machine.axes()) {
+                if axis.kind == AxisKind::Linear {
+                    *position = 0.0;
+                }
+            }
+            at
+        };
+        let ends = [only_rotary(&start), only_rotary(&axes)];
+        let angle = self.swept(&ends).map_err(refused)?;
+        Ok(leg(PosePath::Rotary {
+            tip: [before.tip(), tip],
+            axes: ends,
+            angle,
+        }))
+    }
+
+    /// Angle that the tool sweeps while the rotary axes go evenly, rad: the sum over some parts.
+    fn swept(&self, [start, end]: &[AxisVector; 2]) -> Result<f64, KinematicsError> {
+        let turned: f64 = start
+            .iter()
+            .zip(end.iter())
+            .map(|(start, end)| (end - start).abs())
+            .sum();
+        let parts = (turned / SWEPT).ceil().clamp(1.0, MOST_SWEPT);
+        let mut tool = self.machine.forward(start)?.orientation();
+        let (mut swept, mut part) = (0.0, 1.0);
+        while part <= parts {
+            let mut at = *start;
+            for (at, end) in at.iter_mut().zip(end.iter()) {
+                *at += (end - *at) * (part / parts);
+            }
+            let next = self.machine.forward(&at)?.orientation();
+            swept += angle_between(&tool, &next);
+            tool = next;
+            part += 1.0;
+        }
+        Ok(swept)
+    }
+
     /// The pose with the orientation that the tool has, where it is as good as the same: what is not turned
     /// is not left behind for the next move to jump over.
     fn unturned(&self, end: ToolPose) -> ToolPose {
@@ -187,11 +269,15 @@ impl<'m> Resolver<'m> {
 
     /// Whether a rotary axis, or one that no tool pose knows, has to move to be at `end`.
     fn turns(&self, end: &AxisVector) -> bool {
+        self.turned(&self.at, end)
+    }
+
+    fn turned(&self, start: &AxisVector, end: &AxisVector) -> bool {
         let axes = self.machine.axes();
         // Without an X of its own a machine calls the drives of its tool so.
         let second = axes.iter().any(|axis| axis.name == 'X');
         axes.iter()
-            .zip(self.at.iter().zip(end.iter()))
+            .zip(start.iter().zip(end.iter()))
             .any(|(axis, (start, end))| {
                 let beside = second && matches!(axis.name, 'U' | 'V' | 'W');
                 let apart = axis.kind == AxisKind::Rotary || beside;

@@ -117,6 +117,11 @@ impl<'m> PoseSampler<'m> {
                 self.axes = self.machine.follow(&pose, &self.axes)?;
                 pose
             }
+            Some(PosePiece::Rotary(piece)) => {
+                let (tip, at) = piece.at(since, &self.axes);
+                self.axes = self.machine.place(&tip, &at)?;
+                self.machine.forward(&self.axes)?
+            }
             Some(PosePiece::Axes(piece)) => {
                 piece.at(since, &mut self.axes);
                 self.machine.forward(&self.axes)?

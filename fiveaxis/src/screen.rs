@@ -8,8 +8,12 @@
 use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
 use crate::follow::Worst;
+use crate::swing::{RotarySwing, Swing};
 use crate::way::{AxisWay, Way};
-use toolglide_kinematics::{Axis, MOST_AXES, MachineKinematics, ToolPose, angle_between, turned};
+use toolglide_kinematics::{
+    Axis, AxisVector, GreatCircle, MOST_AXES, MachineKinematics, ToolPose, Vector, angle_between,
+    turned,
+};
 
 /// Share of both blocks at which is measured what they add together.
 const TOGETHER: f64 = 0.5;
@@ -19,7 +23,11 @@ const RESERVE: f64 = 2.0;
 
 /// Where blocks turn the tool together by more than this share of its angle to the pole, what they
 /// add together is not of second order any more.
-const BESIDE_POLE: f64 = 0.02;
+const BESIDE_POLE: f64 = 0.25;
+
+/// Nearer to the pole than this, rad, so many times as little is too much: an axis turns far there.
+const NEAR_POLE: f64 = 0.15;
+const STRICTER: f64 = 12.5;
 
 /// How two blocks act together.
 #[derive(Clone, Copy, Debug)]
@@ -40,44 +48,61 @@ pub(crate) fn mixed(
     if way_before.known().is_none() || way_after.known().is_none() {
         return Ok(None);
     }
-    let refused = |reason| FiveAxisError::Path {
-        index: after.leg,
-        reason,
-    };
-    let (one, two) = (before.pose(1.0 - TOGETHER)?, after.pose(TOGETHER)?);
-    let turn = |orientation| {
-        turned(
-            orientation,
-            &after.turn.axis(),
-            TOGETHER * after.turn.angle(),
-        )
-    };
-    let both = ToolPose::new(
-        one.tip() + (two.tip() - after.start),
-        turn(&one.orientation()),
-    )
-    .map_err(refused)?;
     let near = way_before.last();
-    let follow = |pose: &ToolPose| {
-        machine
-            .follow(pose, near)
-            .map_err(|reason| FiveAxisError::Machine {
-                index: after.leg,
-                reason,
-            })
-    };
-    let [one, two, both] = [follow(&one)?, follow(&two)?, follow(&both)?];
+    let (lacking, done) = (1.0 - TOGETHER, TOGETHER);
+    let both = both([before, after], [lacking, done], machine, near)?;
+    let one = before.axes(lacking, machine, near)?;
+    let two = after.axes(done, machine, near)?;
     let mut mixed = [0.0; MOST_AXES];
     for (axis, mixed) in mixed.iter_mut().enumerate().take(near.len()) {
         let alone = (one[axis] - near[axis]) + (two[axis] - near[axis]);
         *mixed = RESERVE * (both[axis] - near[axis] - alone).abs() / TOGETHER.powi(2);
     }
-    let corner = after.turn.start();
-    let turns = machine.pole(&corner).map_or([0.0; 2], |pole| {
+    let corner = after.turn.circle().map(GreatCircle::start);
+    let pole = corner.and_then(|corner| Some((machine.pole(&corner)?, corner)));
+    let turns = pole.map_or([0.0; 2], |(pole, corner)| {
         let beside = angle_between(&pole, &corner).max(f64::EPSILON);
-        [before, after].map(|block| block.turn.angle().abs() / beside)
+        let weight = if beside < NEAR_POLE { STRICTER } else { 1.0 };
+        [before, after].map(|block| weight * block.turn.amount() / beside)
     });
     Ok(Some(Mixed { axes: mixed, turns }))
+}
+
+/// Axis positions where one block is done up to a share of it, and the next one from its start on.
+fn both(
+    [before, after]: [&PoseBlock; 2],
+    [lacking, done]: [f64; 2],
+    machine: &dyn MachineKinematics,
+    near: &AxisVector,
+) -> Result<AxisVector, FiveAxisError> {
+    let tip = before.tip(lacking) + (after.tip(done) - after.start);
+    let refused = |reason| FiveAxisError::Machine {
+        index: after.leg,
+        reason,
+    };
+    match (&before.turn, &after.turn) {
+        (Swing::Rotary(one), Swing::Rotary(two)) => {
+            let mut rotary = one.at(lacking);
+            for (rotary, span) in rotary.iter_mut().zip(two.spans()) {
+                *rotary += done * span;
+            }
+            let at = RotarySwing::put(machine, &rotary, near);
+            machine.place(&tip, &at).map_err(refused)
+        }
+        (one, two) => {
+            let tool = one
+                .circle()
+                .map_or_else(Vector::<3>::z, |turn| turn.at(lacking));
+            let tool = two.circle().map_or(tool, |turn| {
+                turned(&tool, &turn.axis(), done * turn.angle())
+            });
+            let pose = ToolPose::new(tip, tool).map_err(|reason| FiveAxisError::Path {
+                index: after.leg,
+                reason,
+            })?;
+            machine.follow(&pose, near).map_err(refused)
+        }
+    }
 }
 
 /// Progress of a block over an interval.

@@ -22,7 +22,7 @@ pub(crate) fn corners(blocks: &[PoseBlock]) -> Vec<PoseCorner> {
         if pair[0].length > 0.0 {
             tip_before = index;
         }
-        if pair[0].turn.angle() > 0.0 {
+        if pair[0].turn.amount() > 0.0 {
             turn_before = index;
         }
         corners.push(PoseCorner::of_parts(

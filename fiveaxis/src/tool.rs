@@ -117,7 +117,7 @@ impl<'a> ToolStretch<'a> {
         range: [usize; 2],
     ) -> Result<Worst, FiveAxisError> {
         let chain = self.chain;
-        let piece = piece(&self.blocks, steps, chain, interval, range);
+        let piece = piece(&self.blocks, self.axes, steps, chain, interval, range);
         // The axes are near those of the path of the block that is half done.
         let mut near = self.ways[range[0]].first();
         let under_way = range[0]..=range[1];

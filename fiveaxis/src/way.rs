@@ -12,7 +12,7 @@ use crate::series::{
     AT_STATIONS, STATIONS, Series, bound, falls, last, slope, through_stations, value,
 };
 use toolglide_fir::FilterChain;
-use toolglide_kinematics::{Axis, AxisVector, MOST_AXES, MachineKinematics, ToolPose};
+use toolglide_kinematics::{Axis, AxisVector, MOST_AXES, MachineKinematics, Vector};
 
 /// Largest angle of the tool along one polynomial, rad, and largest length of the tip, mm.
 const ANGLE: f64 = 0.25;
@@ -72,7 +72,7 @@ impl Way {
         machine: &dyn MachineKinematics,
         at: &AxisVector,
     ) -> Result<Self, FiveAxisError> {
-        let parts = (block.turn.angle() / ANGLE)
+        let parts = (block.turn.amount() / ANGLE)
             .max(block.length / LENGTH)
             .ceil()
             .clamp(1.0, MOST);
@@ -82,11 +82,7 @@ impl Way {
             parts: Vec::new(),
             known: true,
         };
-        let refused = |reason| FiveAxisError::Machine {
-            index: block.leg,
-            reason,
-        };
-        let first = machine.follow(&block.pose(0.0)?, at).map_err(refused)?;
+        let first = block.axes(0.0, machine, at)?;
         way.positions.push((0.0, first));
         let mut part = 0.0;
         while part < parts {
@@ -114,12 +110,13 @@ impl Way {
             } else {
                 begin + 0.5 * (1.0 + at) * (end - begin)
             };
-            match machine.follow(&block.pose(share)?, &near) {
+            match block.axes(share, machine, &near) {
                 Ok(next) => near = next,
-                Err(reason) => {
+                Err(reason @ FiveAxisError::Machine { .. }) => {
                     refused = Some(reason);
                     break;
                 }
+                Err(reason) => return Err(reason),
             }
             self.positions.push((share, near));
             for (values, (now, then)) in values.iter_mut().zip(near.iter().zip(first.iter())) {
@@ -140,10 +137,7 @@ impl Way {
             return self.part(block, machine, [middle, end]);
         }
         if let Some(reason) = refused {
-            return Err(FiveAxisError::Machine {
-                index: block.leg,
-                reason,
-            });
+            return Err(reason);
         }
         self.known &= resolved;
         let mut most = [[0.0; 3]; MOST_AXES];
@@ -253,16 +247,12 @@ impl Way {
 }
 
 impl PoseBlock {
-    /// Pose at a share of the block.
-    pub(crate) fn pose(&self, share: f64) -> Result<ToolPose, FiveAxisError> {
-        let tip = if share >= 1.0 {
+    /// Tool tip at a share of the block.
+    pub(crate) fn tip(&self, share: f64) -> Vector<3> {
+        if share >= 1.0 {
             self.end
         } else {
             self.start + (self.end - self.start) * share
-        };
-        ToolPose::new(tip, self.turn.at(share)).map_err(|reason| FiveAxisError::Path {
-            index: self.leg,
-            reason,
-        })
+        }
     }
 }

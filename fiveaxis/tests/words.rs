@@ -17,6 +17,7 @@ fn words(linear: [f64; 3], rotary: [f64; 3], tip: bool, feed: PoseFeed) -> PoseM
         linear: Vector::<3>::from(linear),
         rotary: rotary.map(f64::to_radians),
         tip,
+        great_circle: false,
     };
     PoseMove::new(end, feed, Tolerance::new(0.05).unwrap()).unwrap()
 }
@@ -55,7 +56,7 @@ fn a_rapid_in_tip_mode_goes_to_the_turns_that_it_says_and_a_cut_takes_its_time()
         .map(|next| resolver.leg(next).unwrap())
         .collect();
     assert!(matches!(legs[0].path, PosePath::Axes { .. }), "straight");
-    assert!(matches!(legs[1].path, PosePath::Tool { .. }), "tool");
+    assert!(matches!(legs[1].path, PosePath::Rotary { .. }), "rotary");
     let settings = settings([0.05, 0.025], PoseMethod::DwellControlled);
     let planned = plan(machine.as_ref(), &axes, start, &legs, &settings);
     let report = judge(machine.as_ref(), &axes, &legs, &planned);

@@ -44,7 +44,7 @@ pub use planner::{MotionPlanner, PlanError, WindowTally};
 pub use pose::ToolPose;
 pub use pose_leg::{PoseLeg, PosePath};
 pub use pose_move::{PoseEnd, PoseFeed, PoseMove};
-pub use pose_piece::{AxesPiece, CubicInTime, PosePiece, ToolPiece, Turn, cubic_at};
+pub use pose_piece::{AxesPiece, CubicInTime, PosePiece, RotaryPiece, ToolPiece, Turn, cubic_at};
 pub use sample::{Sample, SamplePeriod};
 pub use tolerance::{Feedrate, OrientationTolerance, Tolerance};
 pub use toolpath::{Move, Path, Toolpath, check_contact};

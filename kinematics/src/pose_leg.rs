@@ -7,6 +7,7 @@ use crate::axis_vector::AxisVector;
 use crate::error::ToolpathError;
 use crate::great_circle::GreatCircle;
 use crate::machine::{Axis, AxisKind};
+use crate::numeric::SHORTEST_LENGTH;
 use crate::pose::ToolPose;
 use crate::pose_move::PoseFeed;
 use crate::tolerance::{OrientationTolerance, Tolerance};
@@ -22,6 +23,15 @@ pub enum PosePath {
         tip: [Vector<3>; 2],
         /// The turn of the tool.
         turn: GreatCircle,
+    },
+    /// The tip goes straight and the rotary axes go evenly, in the same shares: the tool swings as they do.
+    Rotary {
+        /// Tool tip at the start and at the end.
+        tip: [Vector<3>; 2],
+        /// Positions of the rotary axes at the start and at the end, in machine order; those of linear axes are 0.
+        axes: [AxisVector; 2],
+        /// Angle by which the tool swings on its way, rad.
+        angle: f64,
     },
     /// All axes go straight, in the same shares.
     Axes {
@@ -97,13 +107,19 @@ impl PoseLeg {
         })
     }
 
+    /// The line of the tool tip; `None` for what is none.
+    #[must_use]
+    pub fn tip(&self) -> Option<[Vector<3>; 2]> {
+        match &self.path {
+            PosePath::Tool { tip, .. } | PosePath::Rotary { tip, .. } => Some(*tip),
+            _ => None,
+        }
+    }
+
     /// Length of the way of the tool tip, mm; 0 for what is no line of the tip.
     #[must_use]
     pub fn length(&self) -> f64 {
-        match &self.path {
-            PosePath::Tool { tip, .. } => (tip[1] - tip[0]).norm(),
-            _ => 0.0,
-        }
+        self.tip().map_or(0.0, |tip| (tip[1] - tip[0]).norm())
     }
 
     /// How far a straight move of axes goes: the way of the linear axes, mm, and that of the rotary ones, rad; both are
@@ -124,11 +140,30 @@ impl PoseLeg {
         (of(AxisKind::Linear), of(AxisKind::Rotary))
     }
 
+    /// How far the rotary axes turn, rad, the root of the sum of squares, on a leg that turns the tool while its tip stands
+    /// still, as words of rotary axes say it; `None` for any other.
+    #[must_use]
+    pub fn turns_alone(&self) -> Option<f64> {
+        let PosePath::Rotary {
+            axes: [start, end], ..
+        } = &self.path
+        else {
+            return None;
+        };
+        let squares = start
+            .iter()
+            .zip(end.iter())
+            .map(|(start, end)| (end - start).powi(2));
+        let turned = squares.sum::<f64>().sqrt();
+        (self.length() <= SHORTEST_LENGTH && turned > 0.0).then_some(turned)
+    }
+
     /// Angle by which the tool turns, rad; 0 for what is no turn of the tool.
     #[must_use]
     pub fn angle(&self) -> f64 {
         match &self.path {
             PosePath::Tool { turn, .. } => turn.angle(),
+            PosePath::Rotary { angle, .. } => *angle,
             _ => 0.0,
         }
     }

@@ -24,6 +24,9 @@ pub enum PoseEnd {
         rotary: [f64; 3],
         /// Whether the linear words are those of the tool tip.
         tip: bool,
+        /// Whether the tool turns along a great circle to where the rotary words point it, instead of as the rotary
+        /// axes turn it; for words of the tool tip.
+        great_circle: bool,
     },
     /// Standing still, s.
     Dwell {
@@ -191,6 +194,7 @@ mod tests {
             linear: Vector::<3>::new(x, 0.0, 0.0),
             rotary: [a, 0.0, 0.0],
             tip: true,
+            great_circle: false,
         };
         let made = |end, feed| PoseMove::new(end, feed, tolerance);
         assert!(made(words(1.0, 2.0), PoseFeed::Rapid).is_ok(), "sound");

@@ -6,6 +6,7 @@
 
 use crate::axis_vector::AxisVector;
 use crate::great_circle::turned;
+use crate::machine::{KinematicsError, MachineKinematics};
 use crate::piece::Serves;
 use crate::pose::ToolPose;
 use crate::sample::Sample;
@@ -62,10 +63,7 @@ impl ToolPiece {
     #[must_use]
     #[inline]
     pub fn extended(&self, time: f64) -> ToolPose {
-        let start = &self.tip;
-        let tip = start.position
-            + (start.velocity + (start.acceleration * 0.5 + start.jerk * (time / 6.0)) * time)
-                * time;
+        let tip = tip_at(&self.tip, time);
         let mut orientation = self.base;
         for turn in &self.turns {
             orientation = turned(&orientation, &turn.axis, cubic_at(&turn.angle, time));
@@ -101,11 +99,67 @@ impl AxesPiece {
     }
 }
 
+/// Tool tip and rotary axes over a stretch of time: the linear axes follow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RotaryPiece {
+    /// State of the tool tip at the start; its jerk is that of the whole piece.
+    pub tip: Sample<3>,
+    /// Position of each rotary axis against time, in machine order; none for linear axes.
+    pub rotary: Vec<Option<CubicInTime>>,
+    /// Tool tip at the end, exactly.
+    pub end_tip: Vector<3>,
+    /// Positions at the end, exactly; those of linear axes are not looked at.
+    pub end: AxisVector,
+    /// How long it lasts, s.
+    pub duration: f64,
+    /// The moves that it follows.
+    pub serves: Serves,
+}
+
+impl RotaryPiece {
+    /// Tool tip at a time since the start of the piece, and axis positions whose rotary axes are as they are then;
+    /// the linear axes are as in `near`. Exactly the end when it is over.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, time: f64, near: &AxisVector) -> (Vector<3>, AxisVector) {
+        if time < self.duration {
+            return self.extended(time.max(0.0), near);
+        }
+        let mut axes = *near;
+        for ((axis, end), cubic) in axes.iter_mut().zip(self.end.iter()).zip(&self.rotary) {
+            if cubic.is_some() {
+                *axis = *end;
+            }
+        }
+        (self.end_tip, axes)
+    }
+
+    /// The same by the polynomials of the piece at any time, outside of it, too.
+    #[inline]
+    #[must_use]
+    pub fn extended(&self, time: f64, near: &AxisVector) -> (Vector<3>, AxisVector) {
+        let mut axes = *near;
+        for (axis, cubic) in axes.iter_mut().zip(&self.rotary) {
+            if let Some(cubic) = cubic {
+                *axis = cubic_at(cubic, time);
+            }
+        }
+        (tip_at(&self.tip, time), axes)
+    }
+}
+
+fn tip_at(start: &Sample<3>, time: f64) -> Vector<3> {
+    start.position
+        + (start.velocity + (start.acceleration * 0.5 + start.jerk * (time / 6.0)) * time) * time
+}
+
 /// A stretch of motion: of the tool, which a machine follows, or of the axes themselves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PosePiece {
     /// Motion of the tool in workpiece coordinates.
     Tool(ToolPiece),
+    /// Motion of the tool tip, with the rotary axes of a machine.
+    Rotary(RotaryPiece),
     /// Motion of the axes of a machine.
     Axes(AxesPiece),
 }
@@ -116,7 +170,36 @@ impl PosePiece {
     pub fn duration(&self) -> f64 {
         match self {
             Self::Tool(piece) => piece.duration,
+            Self::Rotary(piece) => piece.duration,
             Self::Axes(piece) => piece.duration,
+        }
+    }
+
+    /// Axis positions by the polynomials of the piece at any time since its start, also outside of it, of a machine
+    /// that is near `near`.
+    ///
+    /// # Errors
+    /// What the machine says of the pose.
+    #[inline]
+    pub fn extended(
+        &self,
+        time: f64,
+        machine: &dyn MachineKinematics,
+        near: &AxisVector,
+    ) -> Result<AxisVector, KinematicsError> {
+        match self {
+            Self::Tool(piece) => machine.follow(&piece.extended(time), near),
+            Self::Rotary(piece) => {
+                let (tip, at) = piece.extended(time, near);
+                machine.place(&tip, &at)
+            }
+            Self::Axes(piece) => {
+                let mut at = piece.end;
+                for (position, cubic) in at.iter_mut().zip(&piece.positions) {
+                    *position = cubic_at(cubic, time);
+                }
+                Ok(at)
+            }
         }
     }
 
@@ -125,6 +208,7 @@ impl PosePiece {
     pub fn serves(&self) -> Serves {
         match self {
             Self::Tool(piece) => piece.serves,
+            Self::Rotary(piece) => piece.serves,
             Self::Axes(piece) => piece.serves,
         }
     }

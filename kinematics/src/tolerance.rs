@@ -96,6 +96,10 @@ impl Feedrate {
 pub struct OrientationTolerance(f64);
 
 impl OrientationTolerance {
+    /// So many times the tolerance of the orientation may a rotary axis be from its way where the program says how far it
+    /// turns: the tool tells little of an axis along which it points, but the axis has its word.
+    pub const OF_AXIS: f64 = 10.0;
+
     /// A tolerance in rad.
     ///
     /// # Errors

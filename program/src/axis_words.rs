@@ -1,7 +1,8 @@
 //! Moves of axis words as moves of the tool in the workpiece.
 //!
 //! Source: `G43.4`, `G93` and rotary words as LinuxCNC and others read them; a feedrate of rotary axes
-//! alone is in degrees a minute, one of U, V and W alone in mm along them. Arcs become chords, and the rotary axes go evenly along them. Not here:
+//! alone is in degrees a minute, of the root of the sum of their squares, one of U, V and W alone in mm along them. Arcs
+//! become chords, and the rotary axes go evenly along them. Not here:
 //! reading the words.
 
 use crate::chords::count;
@@ -21,6 +22,15 @@ use toolglide_kinematics::{
 pub(crate) struct AxisWords<R> {
     pub(crate) program: Program<R>,
     waiting: VecDeque<PoseMove>,
+}
+
+/// What axis words mean.
+#[derive(Clone, Copy)]
+struct Words {
+    /// Whether those of linear axes are of the tool tip.
+    tip: bool,
+    /// Whether those of rotary axes say where the tool points, and not how the axes turn.
+    great_circle: bool,
 }
 
 /// What a block says about all its moves.
@@ -59,7 +69,11 @@ impl<R: BufRead> AxisWords<R> {
             turning: state.modal.feedrate.filter(|_| feeds && !inverse),
             sliding: state.modal.feedrate.filter(|_| feeds && !inverse),
         };
-        let (tip, tool) = (state.tip, state.offsets.tool());
+        let tool = state.offsets.tool();
+        let words = Words {
+            tip: state.tip,
+            great_circle: state.great_circle,
+        };
         let turning = block
             .turning
             .map(|speed| self.program.lowering.modal.units.written(speed));
@@ -68,8 +82,8 @@ impl<R: BufRead> AxisWords<R> {
         let mut at = start;
         while let Some(step) = self.program.waiting.pop_front() {
             let end = step.end(at);
-            let shown = |point: Vector<3>| if tip { point - tool } else { point };
-            let outcome = poses(&step, at, &block, single, tip, shown, &mut self.waiting);
+            let shown = |point: Vector<3>| if words.tip { point - tool } else { point };
+            let outcome = poses(&step, at, &block, single, words, shown, &mut self.waiting);
             if let Err(reason) = outcome {
                 return Err(self.program.refuse(reason.into()));
             }
@@ -85,16 +99,16 @@ fn poses(
     start: Vector<3>,
     block: &Block,
     single: bool,
-    tip: bool,
+    words: Words,
     shown: impl Fn(Vector<3>) -> Vector<3>,
     into: &mut VecDeque<PoseMove>,
 ) -> Result<(), ToolpathError> {
     let at =
         |share: f64, axis: usize| block.from[axis] + share * (block.to[axis] - block.from[axis]);
-    let turned = |share: f64| std::array::from_fn(|axis| at(share, axis).to_radians());
+    let at_share = |share: f64| std::array::from_fn(|axis| at(share, axis).to_radians());
     let slid = |share: f64| std::array::from_fn(|axis| at(share, ROTARY + axis));
     // Of several moves in one block the first turns.
-    let end_turn = turned(1.0);
+    let end_turn = at_share(1.0);
     let finished = |end, feed, tolerance, share| -> Result<PoseMove, ToolpathError> {
         PoseMove::new(end, feed, tolerance)?
             .from_line(step.line())
@@ -119,8 +133,9 @@ fn poses(
                 let share = f64::from(chord) / f64::from(chords);
                 let end = PoseEnd::Axes {
                     linear: shown(arc.point(share)),
-                    rotary: turned(share),
-                    tip,
+                    rotary: at_share(share),
+                    tip: words.tip,
+                    great_circle: words.great_circle,
                 };
                 let next = finished(end, feed, kept, share)?;
                 let stops = chord == chords && step.stops();
@@ -131,15 +146,15 @@ fn poses(
             let there = step.end(start);
             let still = (there - start).norm() <= 0.0;
             let travel = |axis: usize| (block.to[axis] - block.from[axis]).abs();
-            let largest = (0..ROTARY).map(travel).fold(0.0_f64, f64::max);
+            let turned = (0..ROTARY).map(travel).fold(0.0_f64, f64::hypot);
             let slide = (ROTARY..OTHERS.len()).map(travel).fold(0.0_f64, f64::hypot);
             let feed = match (block.duration, block.turning) {
                 (Some(duration), _) if single => PoseFeed::Duration(duration),
-                (_, Some(speed)) if single && still && speed > 0.0 && largest > 0.0 => {
-                    PoseFeed::Duration(largest / speed)
+                (_, Some(speed)) if single && still && speed > 0.0 && turned > 0.0 => {
+                    PoseFeed::Duration(turned / speed)
                 }
                 _ => match block.sliding.filter(|_| single && still && slide > 0.0) {
-                    Some(speed) if speed > 0.0 && largest <= 0.0 => {
+                    Some(speed) if speed > 0.0 && turned <= 0.0 => {
                         PoseFeed::Duration(slide / speed)
                     }
                     _ => speed(step.feedrate()),
@@ -148,7 +163,8 @@ fn poses(
             let end = PoseEnd::Axes {
                 linear: shown(there),
                 rotary: end_turn,
-                tip,
+                tip: words.tip,
+                great_circle: words.great_circle,
             };
             let next = finished(end, feed, step.tolerance(), 1.0)?;
             into.push_back(if step.stops() {

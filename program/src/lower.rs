@@ -53,6 +53,8 @@ pub(crate) struct Lowering {
     pub(crate) others: Others,
     /// Whether the axis words are those of the tool tip.
     pub(crate) tip: bool,
+    /// Whether the tool turns along a great circle to where rotary words point it.
+    pub(crate) great_circle: bool,
     pub(crate) compensation: Option<Compensation>,
     /// Whether compensation begins on the normal of its second move, as for Sinumerik and FANUC.
     pub(crate) leads_to_normal: bool,
@@ -94,6 +96,7 @@ impl Lowering {
             position: settings.start,
             others: Others::default(),
             tip: false,
+            great_circle: false,
             compensation: None,
             leads_to_normal: false,
             fanuc: false,

@@ -181,6 +181,8 @@ impl Line<'_> {
             "SUPA" => return self.add(b'G', 53.0, span),
             "TRAORI" => self.state.tip = true,
             "TRAFOOF" => self.state.tip = false,
+            "ORIAXES" => self.state.great_circle = false,
+            "ORIVECT" | "ORIPLANE" => self.state.great_circle = true,
             "TRANS" | "ATRANS" => {
                 let added = name == "ATRANS";
                 self.frame = Some((FrameWord::Shift { added }, span));

@@ -4,7 +4,7 @@
 
 /// Words of no effect on the path: compression, feed-forward, ways of accelerating, orientation, blanks
 /// for the simulation.
-const SILENT: [&str; 52] = [
+const SILENT: [&str; 50] = [
     "BRISK",
     "BRISKA",
     "CDOF",
@@ -38,10 +38,8 @@ const SILENT: [&str; 52] = [
     "GROUP_END",
     "MSG",
     "NORM",
-    "ORIAXES",
     "ORICONIO",
     "ORIMKS",
-    "ORIVECT",
     "ORIWKS",
     "OSOF",
     "RTLIOF",

@@ -35,6 +35,7 @@ fn axes(step: &PoseMove) -> (Vector<3>, [f64; 3], bool) {
             linear,
             rotary,
             tip,
+            ..
         } => (*linear, *rotary, *tip),
         other => panic!("{other:?} is no axis words"),
     }

@@ -104,6 +104,25 @@ fn the_tool_tip_moves_between_traori_and_trafoof() {
 }
 
 #[test]
+fn rotary_words_turn_axes_by_oriaxes_and_point_the_tool_by_orivect_and_oriplane() {
+    let text = "TRAORI\nG0 A-45 C0\nORIVECT\nC10\nORIAXES\nC20\nORIPLANE\nC30\nORIAXES C40\n";
+    let moves = try_read(text).unwrap();
+    let circles: Vec<bool> = moves
+        .iter()
+        .map(|step| {
+            matches!(
+                step.end(),
+                PoseEnd::Axes {
+                    great_circle: true,
+                    ..
+                }
+            )
+        })
+        .collect();
+    assert_eq!(circles, [false, true, false, true, false], "great circles");
+}
+
+#[test]
 fn cycle832_sets_the_tolerance_and_ends_it() {
     let text = "G60\nG1 X1 F600\nCYCLE832(.02,1,1)\nX2\nCYCLE832()\nX3\n";
     let moves = try_read(text).unwrap();

@@ -5,7 +5,9 @@
 //! plane that touches the unit sphere. Not here: drawing.
 
 use std::collections::VecDeque;
-use toolglide_kinematics::{PoseLeg, PosePath, PosePiece, ToolPiece, ToolPose, Vector};
+use toolglide_kinematics::{
+    GreatCircle, PoseLeg, PosePath, PosePiece, ToolPiece, ToolPose, Vector,
+};
 
 /// Pieces that are remembered from before a corner.
 const BEFORE: usize = 256;
@@ -40,6 +42,22 @@ impl Part {
         }
     }
 
+    /// The motion of the part in a piece; `None` where it is not that of a tool about one axis.
+    fn piece(self, piece: &PosePiece) -> Option<ToolPiece> {
+        match (piece, self) {
+            (PosePiece::Tool(piece), _) => Some(piece.clone()),
+            (PosePiece::Rotary(piece), Self::Tip) => Some(ToolPiece {
+                tip: piece.tip,
+                base: Vector::<3>::z(),
+                turns: Vec::new(),
+                end: ToolPose::upright(piece.end_tip).ok()?,
+                duration: piece.duration,
+                serves: piece.serves,
+            }),
+            _ => None,
+        }
+    }
+
     /// How far the motion may leave the leg.
     fn tolerance(self, leg: &PoseLeg) -> f64 {
         match self {
@@ -50,18 +68,17 @@ impl Part {
 
     /// Unit directions in which a leg begins and ends; none when it does not move.
     fn directions(self, leg: &PoseLeg) -> Option<[Vector<3>; 2]> {
-        let PosePath::Tool { tip, turn } = &leg.path else {
-            return None;
-        };
         match self {
             Self::Tip => {
+                let tip = leg.tip()?;
                 let along = (tip[1] - tip[0]).try_normalize(0.0)?;
                 Some([along, along])
             }
-            Self::Orientation => (turn.angle() > 0.0).then(|| {
+            Self::Orientation => {
+                let turn = circle(leg).filter(|turn| turn.angle() > 0.0)?;
                 let along = |at: Vector<3>| turn.axis().cross(&at);
-                [along(turn.start()), along(turn.end())]
-            }),
+                Some([along(turn.start()), along(turn.end())])
+            }
         }
     }
 
@@ -71,6 +88,14 @@ impl Part {
             Self::Tip => leg.length(),
             Self::Orientation => leg.angle(),
         }
+    }
+}
+
+/// The turn of a leg whose tool turns about one axis.
+fn circle(leg: &PoseLeg) -> Option<&GreatCircle> {
+    match &leg.path {
+        PosePath::Tool { turn, .. } => Some(turn),
+        _ => None,
     }
 }
 
@@ -128,9 +153,10 @@ impl PoseCornerFinder {
 
     /// Takes the next piece of the motion.
     pub(super) fn observe(&mut self, piece: &PosePiece) {
-        let PosePiece::Tool(piece) = piece else {
+        let Some(piece) = self.part.piece(piece) else {
             return;
         };
+        let piece = &piece;
         if let Some(best) = &mut self.best
             && is_near(piece, best.index)
             && best.pieces.len() < MOST
@@ -156,7 +182,11 @@ impl PoseCornerFinder {
         else {
             return;
         };
-        let PosePath::Tool { tip, turn } = &next.path else {
+        let point = match part {
+            Part::Tip => next.tip().map(|tip| tip[0]),
+            Part::Orientation => circle(next).map(GreatCircle::start),
+        };
+        let Some(point) = point else {
             return;
         };
         let angle = 2.0
@@ -176,10 +206,7 @@ impl PoseCornerFinder {
         let before = self.recent.iter().filter(|piece| is_near(piece, index));
         self.best = Some(PoseCorner {
             line: last.line,
-            point: match part {
-                Part::Tip => tip[0],
-                Part::Orientation => turn.start(),
-            },
+            point,
             incoming,
             outgoing,
             tolerance,

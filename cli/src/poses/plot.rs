@@ -13,7 +13,9 @@ use crate::plot::color;
 use crate::plot::curve::draw_curve;
 use crate::plot::envelope::Envelope;
 use toolglide_fiveaxis::PoseTick;
-use toolglide_kinematics::{Axis, PoseLeg, PosePath, PosePiece, SamplePeriod, Vector};
+use toolglide_kinematics::{
+    Axis, MachineKinematics, PoseLeg, PosePath, PosePiece, SamplePeriod, Vector,
+};
 
 /// Size of the sheet, pixels.
 const WIDTH: f64 = 1600.0;
@@ -33,7 +35,8 @@ const ARC_POINTS: u32 = 16;
 const MOST_LEGS: usize = 1 << 14;
 
 /// Gathers what the picture shows.
-pub(crate) struct PosePlot {
+pub(crate) struct PosePlot<'m> {
+    machine: &'m dyn MachineKinematics,
     axes: Vec<Axis>,
     period: f64,
     curves: Envelope,
@@ -43,13 +46,20 @@ pub(crate) struct PosePlot {
     motion: Vec<(Vector<3>, Vector<3>)>,
     stride: u64,
     legs: Vec<PoseLeg>,
+    /// Orientations of the tool along each leg.
+    swings: Vec<Vec<Vector<3>>>,
     corners: [PoseCornerFinder; 2],
     time: f64,
 }
 
-impl PosePlot {
-    pub(crate) fn new(axes: &[Axis], period: SamplePeriod) -> Self {
+impl<'m> PosePlot<'m> {
+    pub(crate) fn new(
+        machine: &'m dyn MachineKinematics,
+        axes: &[Axis],
+        period: SamplePeriod,
+    ) -> Self {
         Self {
+            machine,
             period: period.seconds(),
             curves: Envelope::new(3 * axes.len() + 1),
             last: None,
@@ -57,6 +67,7 @@ impl PosePlot {
             motion: Vec::new(),
             stride: 1,
             legs: Vec::new(),
+            swings: Vec::new(),
             corners: [Part::Tip, Part::Orientation].map(PoseCornerFinder::new),
             time: 0.0,
             axes: axes.to_vec(),
@@ -68,8 +79,30 @@ impl PosePlot {
         for corner in &mut self.corners {
             corner.expect(leg);
         }
-        if matches!(leg.path, PosePath::Tool { .. }) && self.legs.len() < MOST_LEGS {
+        if leg.tip().is_some() && self.legs.len() < MOST_LEGS {
+            self.swings.push(self.swing(leg));
             self.legs.push(leg.clone());
+        }
+    }
+
+    /// Orientations of the tool along a leg.
+    fn swing(&self, leg: &PoseLeg) -> Vec<Vector<3>> {
+        let shares = (0..=ARC_POINTS).map(|step| f64::from(step) / f64::from(ARC_POINTS));
+        match &leg.path {
+            PosePath::Tool { turn, .. } => shares.map(|share| turn.at(share)).collect(),
+            PosePath::Rotary { axes, .. } => shares
+                .filter_map(|share| {
+                    let mut at = axes[0];
+                    for (at, end) in at.iter_mut().zip(axes[1].iter()) {
+                        *at += (end - *at) * share;
+                    }
+                    self.machine
+                        .forward(&at)
+                        .ok()
+                        .map(|pose| pose.orientation())
+                })
+                .collect(),
+            _ => Vec::new(),
         }
     }
 
@@ -217,14 +250,7 @@ impl PosePlot {
                 point.z + (point.x + point.y) * sine,
             )
         };
-        let programmed: Vec<_> = self
-            .legs
-            .iter()
-            .filter_map(|leg| match &leg.path {
-                PosePath::Tool { tip, .. } => Some(*tip),
-                _ => None,
-            })
-            .collect();
+        let programmed: Vec<_> = self.legs.iter().filter_map(PoseLeg::tip).collect();
         let mut across = (f64::INFINITY, f64::NEG_INFINITY);
         let mut upward = across;
         let points = self
@@ -279,13 +305,9 @@ impl PosePlot {
             let length =
                 0.05 * ((chart.across.1 - chart.across.0).min(chart.upward.1 - chart.upward.0));
             let style = format!("stroke=\"{}\" stroke-width=\"1.6\"", color::AXES[0]);
-            for leg in &self.legs {
-                if let PosePath::Tool { tip, turn } = &leg.path {
-                    canvas.line(
-                        place(&tip[1]),
-                        place(&(tip[1] + turn.end() * length)),
-                        &style,
-                    );
+            for (leg, swing) in self.legs.iter().zip(&self.swings) {
+                if let (Some(tip), Some(tool)) = (leg.tip(), swing.last()) {
+                    canvas.line(place(&tip[1]), place(&(tip[1] + tool * length)), &style);
                 }
             }
         }
@@ -334,13 +356,8 @@ impl PosePlot {
             );
         }
         let mut arcs = Outline::default();
-        for leg in &self.legs {
-            if let PosePath::Tool { turn, .. } = &leg.path {
-                arcs.stretch((0..=ARC_POINTS).map(|step| {
-                    let at = turn.at(f64::from(step) / f64::from(ARC_POINTS));
-                    chart.at(at.x, at.y)
-                }));
-            }
+        for swing in &self.swings {
+            arcs.stretch(swing.iter().map(|at| chart.at(at.x, at.y)));
         }
         let grey = color::PROGRAMMED;
         canvas.path(

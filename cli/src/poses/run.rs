@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use toolglide_fiveaxis::{
     FiveAxisError, PoseMethod, PosePlanner, PoseSampler, PoseSettings, PoseTick,
 };
-use toolglide_kinematics::{PoseJudge, PosePiece};
+use toolglide_kinematics::{PoseFeed, PoseJudge, PosePiece};
 
 /// The method by its name.
 fn method(name: &str, way_points: u32) -> Result<PoseMethod, CliError> {
@@ -77,7 +77,13 @@ pub(crate) fn plan(
         args.pose,
         destination,
     );
-    let plot = drawn.then(|| PosePlot::new(&inputs.setup.axes, inputs.setup.period));
+    let plot = drawn.then(|| {
+        PosePlot::new(
+            inputs.machine.as_ref(),
+            &inputs.setup.axes,
+            inputs.setup.period,
+        )
+    });
     let mut run = Run::new(&inputs, legs, settings, rows, plot)?;
     run.read()?;
     let done = run.finish(&inputs)?;
@@ -124,8 +130,10 @@ struct Run<'a> {
     judge: PoseJudge<'a>,
     sampler: PoseSampler<'a>,
     rows: Rows<'a>,
-    plot: Option<PosePlot>,
+    plot: Option<PosePlot<'a>>,
     planning_time: Duration,
+    /// Feed moves that turn the tool alone, and how far, rad.
+    turning: (u32, f64),
     /// Lines of the legs, to say where a refusal is.
     lines: Vec<u32>,
 }
@@ -134,7 +142,7 @@ struct Run<'a> {
 struct Finished<'a> {
     legs: Legs<'a>,
     summary: PoseSummary,
-    plot: Option<PosePlot>,
+    plot: Option<PosePlot<'a>>,
 }
 
 impl<'a> Run<'a> {
@@ -143,7 +151,7 @@ impl<'a> Run<'a> {
         legs: Legs<'a>,
         settings: PoseSettings,
         rows: Rows<'a>,
-        plot: Option<PosePlot>,
+        plot: Option<PosePlot<'a>>,
     ) -> Result<Self, CliError> {
         let machine = inputs.machine.as_ref();
         let axes = &inputs.setup.axes;
@@ -158,6 +166,7 @@ impl<'a> Run<'a> {
             rows,
             plot,
             planning_time: Duration::ZERO,
+            turning: (0, 0.0),
             lines: Vec::new(),
         })
     }
@@ -165,6 +174,9 @@ impl<'a> Run<'a> {
     fn read(&mut self) -> Result<(), CliError> {
         while let Some(leg) = self.legs.next()? {
             self.judge.expect(&leg);
+            if let Some(turned) = leg.turns_alone().filter(|_| leg.feed != PoseFeed::Rapid) {
+                self.turning = (self.turning.0 + 1, self.turning.1 + turned);
+            }
             if let Some(plot) = &mut self.plot {
                 plot.expect(&leg);
             }
@@ -246,6 +258,8 @@ impl<'a> Run<'a> {
             .planner
             .usual_filters()
             .map_or_else(Vec::new, |pair| pair.to_vec());
+        summary.turning_moves = self.turning.0;
+        summary.turning_deg = self.turning.1.to_degrees();
         summary.fir_varies = !self.planner.has_one_chain();
         summary.planning_time_s = Some(self.planning_time.as_secs_f64());
         Ok(Finished {

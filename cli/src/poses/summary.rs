@@ -58,6 +58,9 @@ pub(crate) struct PoseSummary {
     pub(crate) moves: u32,
     pub(crate) path_length_mm: f64,
     pub(crate) path_angle_deg: f64,
+    /// Feed moves that turn the tool alone, and degrees of A, B and C that their feedrates count.
+    pub(crate) turning_moves: u32,
+    pub(crate) turning_deg: f64,
     pub(crate) peak_speed_mm_s: f64,
     pub(crate) tip_deviation_mm: f64,
     pub(crate) tip_deviation_share: f64,
@@ -127,6 +130,8 @@ impl PoseSummary {
             moves: report.moves,
             path_length_mm: report.path_length,
             path_angle_deg: report.path_angle.to_degrees(),
+            turning_moves: 0,
+            turning_deg: 0.0,
             peak_speed_mm_s: report.peak_speed.value,
             tip_deviation_mm: report.tip_deviation.value,
             tip_deviation_share: report.tip_ratio.value,
@@ -167,6 +172,22 @@ impl PoseSummary {
                 limit: slow.quantity,
             })
             .collect();
+    }
+
+    /// What the feedrate of moves counts that turn the tool alone.
+    fn turning(&self) -> String {
+        if self.turning_moves == 0 {
+            return String::new();
+        }
+        let word = if self.turning_moves == 1 {
+            "move turns"
+        } else {
+            "moves turn"
+        };
+        format!(
+            "turning      {} {word} the tool alone; the feedrate counts {:.1} degrees of A, B and C\n",
+            self.turning_moves, self.turning_deg
+        )
     }
 
     fn axes_table(&self, text: &mut String) {
@@ -228,7 +249,7 @@ impl Shown for PoseSummary {
             "{program}: {how}\n\n\
              cycle time   {clock}  ({cycle:.3} s; {rows} set-points{every})\n\
              path         {length:.3} mm and {angle:.2} degrees in {moves} moves from {blocks} blocks\n\
-             feedrate     {fastest:.1} mm/s at most ({per_minute:.0} mm/min)\n\
+             {turning}feedrate     {fastest:.1} mm/s at most ({per_minute:.0} mm/min)\n\
              tool tip     {tip:.5} mm from the path, {tip_share:.1} % of the tolerance; \
              corners within {corner:.5} mm, {corner_share:.1} %\n\
              orientation  {tool:.6} rad from the path, {tool_share:.1} % of the tolerance; \
@@ -242,6 +263,7 @@ impl Shown for PoseSummary {
             angle = self.path_angle_deg,
             moves = self.moves,
             blocks = self.blocks,
+            turning = self.turning(),
             fastest = self.peak_speed_mm_s,
             per_minute = 60.0 * self.peak_speed_mm_s,
             tip = self.tip_deviation_mm,

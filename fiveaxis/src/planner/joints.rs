@@ -35,12 +35,7 @@ impl PosePlanner<'_> {
             while part <= parts {
                 let share = part / parts;
                 let end = if part < parts {
-                    self.machine
-                        .follow(&block.pose(share)?, &start)
-                        .map_err(|reason| FiveAxisError::Machine {
-                            index: block.leg,
-                            reason,
-                        })?
+                    block.axes(share, self.machine, &start)?
                 } else {
                     *way.last()
                 };

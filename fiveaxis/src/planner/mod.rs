@@ -107,9 +107,9 @@ impl<'m> PosePlanner<'m> {
             return Err(FiveAxisError::Finished { index });
         }
         self.count = self.count.saturating_add(1);
-        let is_axes = |leg: &PoseLeg| matches!(leg.path, PosePath::Axes { .. });
+        let kind = |leg: &PoseLeg| std::mem::discriminant(&leg.path);
         if let Some((_, before)) = self.pending.last()
-            && is_axes(before) != is_axes(&leg)
+            && kind(before) != kind(&leg)
         {
             self.plan()?;
         }

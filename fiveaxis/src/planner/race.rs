@@ -37,12 +37,12 @@ pub(super) struct Contender {
 
 impl Contender {
     /// The pieces of the motion.
-    pub(super) fn pieces(&self) -> impl Iterator<Item = PosePiece> {
+    pub(super) fn pieces(&self, axes: &[Axis]) -> impl Iterator<Item = PosePiece> {
         let knots = knots(&self.steps, &self.chain);
         let within: Vec<_> = intervals(&self.steps, &knots, &self.chain).collect();
-        within.into_iter().map(|(interval, range)| {
+        within.into_iter().map(move |(interval, range)| {
             let (blocks, steps) = (&self.blocks, &self.steps);
-            PosePiece::Tool(piece(blocks, steps, &self.chain, interval, range))
+            piece(blocks, axes, steps, &self.chain, interval, range)
         })
     }
 
@@ -194,7 +194,7 @@ impl Race<'_> {
             return true;
         }
         let start = row.first().map(|section| section.way.first());
-        let pieces: Vec<_> = made.pieces().collect();
+        let pieces: Vec<_> = made.pieces(self.axes).collect();
         start.is_none_or(|start| keeps_axis_limits(self.machine, self.axes, start, &pieces))
     }
 

@@ -10,6 +10,7 @@ use crate::error::FiveAxisError;
 use crate::follow::Worst;
 use crate::pole::{Spin, parts_at_pole};
 use crate::settings::PoseMethod;
+use crate::swing::weigh;
 use crate::timing::goes_on;
 use crate::way::Way;
 use std::sync::Arc;
@@ -21,10 +22,11 @@ const LEAST_TURN: f64 = 0.01;
 impl PosePlanner<'_> {
     pub(super) fn plan_tool(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
         let mut row = Vec::new();
-        for (number, leg) in legs {
-            let Some(block) = PoseBlock::of(leg, *number, self.settings.turn_rate()) else {
-                continue;
-            };
+        let of =
+            |(number, leg): &(u32, PoseLeg)| PoseBlock::of(leg, *number, self.settings.turn_rate());
+        let mut blocks: Vec<PoseBlock> = legs.iter().filter_map(of).collect();
+        weigh(&mut blocks, self.machine)?;
+        for block in blocks {
             if self.goes_straight() {
                 let way = Way::along(&block, self.machine, &self.at)?;
                 self.take(&mut row, block, way);
@@ -74,7 +76,13 @@ impl PosePlanner<'_> {
         let Some(last) = row.last() else {
             return Ok(());
         };
-        self.pose = last.block.pose(1.0)?;
+        self.pose =
+            self.machine
+                .forward(last.way.last())
+                .map_err(|reason| FiveAxisError::Machine {
+                    index: last.block.leg,
+                    reason,
+                })?;
         if let PoseMethod::JointSpace { way_points } = self.settings.method() {
             return self.plan_joints(&row, way_points);
         }
@@ -91,7 +99,7 @@ impl PosePlanner<'_> {
 
     /// Makes pieces of a motion from rest to rest.
     fn lay(&mut self, won: &Contender) {
-        self.pieces.extend(won.pieces());
+        self.pieces.extend(won.pieces(&self.axes));
         self.usage.add(&won.chain, won.duration());
         self.note(&won.blocks, &won.asked, &won.met);
     }

@@ -90,6 +90,18 @@ impl Case {
         [x, y, z, Jet::constant(0.0), Jet::constant(spin)]
     }
 
+    /// The axes while the rotary ones go as they are told.
+    pub(crate) fn axes_of_rotary(&self, tip: JetVector, tilt: Jet, spin: Jet) -> [Jet; 5] {
+        let ((lean, up), (sine, cosine)) = (tilt.sin_cos(), spin.sin_cos());
+        let [i, j] = match self.form {
+            Form::TableAc => [sine, cosine],
+            Form::HeadBc => [cosine, sine],
+        };
+        let tool = JetVector([lean * i, lean * j, up]);
+        let [x, y, z] = self.linear(tip, tool, [i, j]);
+        [x, y, z, tilt, spin]
+    }
+
     /// The linear axes, where a tool that tilts to the positive side leans along X and Y like this.
     fn linear(&self, tip: JetVector, tool: JetVector, [i, j]: [Jet; 2]) -> [Jet; 3] {
         let up = JetVector::constant([0.0, 0.0, 1.0]);

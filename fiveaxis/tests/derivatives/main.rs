@@ -12,6 +12,7 @@ mod common;
 mod follower;
 mod jet;
 mod machines;
+mod rotary;
 
 use common::{judge, legs, plan, settings, start_of};
 use follower::{Follower, Peaks};
@@ -141,7 +142,17 @@ struct Found {
 impl Found {
     /// Compares both derivations of a motion.
     fn compare(&mut self, case: &Case, chain: &Chain) {
-        let (jets, judged, passes) = both(case, chain);
+        self.take(case, chain, chain.haste, both(case, chain));
+    }
+
+    /// Compares what both derivations found.
+    fn take(
+        &mut self,
+        case: &Case,
+        chain: &dyn std::fmt::Debug,
+        haste: f64,
+        (jets, judged, passes): (Peaks, Peaks, bool),
+    ) {
         let mut most = 0.0_f64;
         for (place, (jet, judged)) in jets
             .as_flattened()
@@ -163,7 +174,7 @@ impl Found {
         }
         self.most = self.most.max(most);
         self.motions += 1;
-        if chain.haste <= 1.0 {
+        if haste <= 1.0 {
             assert!(
                 most <= 1.0 + EXCESS && passes,
                 "{}: {most} of a limit, passes: {passes}: {chain:?}",

@@ -5,7 +5,7 @@
 
 use crate::axis_vector::AxisVector;
 use crate::machine::{Axis, KinematicsError, MachineKinematics};
-use crate::pose_piece::{AxesPiece, CubicInTime, ToolPiece};
+use crate::pose_piece::{AxesPiece, CubicInTime, PosePiece};
 use std::sync::LazyLock;
 
 /// Nodes of one interpolation.
@@ -67,25 +67,32 @@ impl<'m> Follower<'m> {
         }
     }
 
-    /// The derivatives of all axes over a piece, in the order of time.
+    /// The derivatives of all axes over a piece of tool motion, or of motion of the tip with the rotary axes, in the
+    /// order of time.
     pub(super) fn tool(
         &mut self,
-        piece: &ToolPiece,
+        piece: &PosePiece,
         take: Take<'_>,
     ) -> Result<(), (f64, KinematicsError)> {
-        if piece.duration > 0.0 {
-            self.stretch(piece, [0.0, piece.duration], LEAST_HALF, take)?;
+        let duration = piece.duration();
+        if duration > 0.0 {
+            self.stretch(piece, [0.0, duration], LEAST_HALF, take)?;
         }
-        self.near = self
-            .machine
-            .inverse(&piece.end, &self.near)
-            .map_err(|reason| (piece.duration, reason))?;
+        self.near = match piece {
+            PosePiece::Tool(piece) => self.machine.inverse(&piece.end, &self.near),
+            PosePiece::Rotary(piece) => {
+                let (tip, at) = piece.at(duration, &self.near);
+                self.machine.place(&tip, &at)
+            }
+            PosePiece::Axes(piece) => Ok(piece.end),
+        }
+        .map_err(|reason| (duration, reason))?;
         Ok(())
     }
 
     fn stretch(
         &mut self,
-        piece: &ToolPiece,
+        piece: &PosePiece,
         [begin, end]: [f64; 2],
         least: f64,
         take: Take<'_>,
@@ -97,10 +104,10 @@ impl<'m> Follower<'m> {
         for node in 0..NODES {
             // From the start of the stretch to its end.
             let at = middle - half * node_at(node);
-            near = match self.machine.follow(&piece.extended(at), &near) {
+            near = match piece.extended(at, self.machine, &near) {
                 Ok(near) => near,
                 // Beyond the ends of the piece the machine need not get anywhere.
-                Err(_) if !(0.0..=piece.duration).contains(&at) => {
+                Err(_) if !(0.0..=piece.duration()).contains(&at) => {
                     self.near = before;
                     return self.stretch(piece, [begin, end], 0.5 * least, take);
                 }

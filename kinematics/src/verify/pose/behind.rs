@@ -29,6 +29,7 @@ impl PoseJudge<'_> {
                     if value > room[order] {
                         report.add(PoseViolation::Jump {
                             axis: axes[axis].name,
+                            kind: axes[axis].kind,
                             what: what[order],
                             value,
                             time: begin + time,
@@ -55,6 +56,7 @@ impl PoseJudge<'_> {
                 if value.is_nan() || value > limit * (1.0 + FOUND_SLACK) {
                     report.add(PoseViolation::Axis {
                         axis: axes[axis].name,
+                        kind: axes[axis].kind,
                         quantity,
                         value,
                         limit,
@@ -65,8 +67,8 @@ impl PoseJudge<'_> {
             }
         };
         match piece {
-            PosePiece::Tool(tool) => {
-                if let Err((time, reason)) = self.follower.tool(tool, &mut take) {
+            PosePiece::Tool(_) | PosePiece::Rotary(_) => {
+                if let Err((time, reason)) = self.follower.tool(piece, &mut take) {
                     self.report.add(PoseViolation::Unreachable {
                         reason: reason.to_string(),
                         time: begin + time,

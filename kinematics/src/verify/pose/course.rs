@@ -11,6 +11,7 @@ use crate::numeric::LIMIT_SLACK;
 use crate::pose::ToolPose;
 use crate::pose_leg::PosePath;
 use crate::pose_piece::{AxesPiece, PosePiece, ToolPiece};
+use crate::sample::Sample;
 
 /// Lengths of an orientation may differ from 1 by this.
 const UNIT_SLACK: f64 = 1e-14;
@@ -30,7 +31,7 @@ impl PoseJudge<'_> {
             });
         }
         self.judge_course(&mut pose, duration, first, last);
-        self.judge_speed(piece, first, last);
+        self.judge_speed(&piece.tip, duration, first, last);
     }
 
     pub(super) fn judge_course(
@@ -48,7 +49,7 @@ impl PoseJudge<'_> {
                 point: &mut |time| pose(time).tip(),
                 legs: &|point, visit| {
                     route.each(first, last, |number, leg| {
-                        if let PosePath::Tool { tip, .. } = &leg.path {
+                        if let Some(tip) = leg.tip() {
                             let distance = from_segment(point, &tip[0], &tip[1]);
                             visit(number, distance, leg.tip_tolerance.length());
                         }
@@ -122,13 +123,16 @@ impl PoseJudge<'_> {
         let begin = self.time;
         self.route
             .each_end(first.saturating_sub(1), last, |leg, end| {
-                let PosePath::Tool { tip, turn } = &leg.path else {
+                let Some(tip) = leg.tip() else {
                     return;
                 };
                 let found = approach(duration, |time| (pose(time).tip() - tip[1]).norm());
                 if found.0 < end.tip.0 {
                     end.tip = (found.0, begin + found.1);
                 }
+                let PosePath::Tool { turn, .. } = &leg.path else {
+                    return;
+                };
                 let found = approach(duration, |time| {
                     angle_between(&pose(time).orientation(), &turn.end())
                 });
@@ -192,14 +196,13 @@ impl PoseJudge<'_> {
         }
     }
 
-    pub(super) fn judge_speed(&mut self, piece: &ToolPiece, first: u32, last: u32) {
+    pub(super) fn judge_speed(&mut self, start: &Sample<3>, duration: f64, first: u32, last: u32) {
         let mut feedrate: f64 = 0.0;
         self.route.each(first, last, |_, leg| {
             feedrate = feedrate.max(route::feedrate(leg));
         });
-        let start = &piece.tip;
         for step in 0..=16 {
-            let time = piece.duration * f64::from(step) / 16.0;
+            let time = duration * f64::from(step) / 16.0;
             let velocity = start.velocity + (start.acceleration + start.jerk * (0.5 * time)) * time;
             let (speed, place) = (velocity.norm(), self.route.place(first));
             self.report.peak_speed.raise(speed, self.time + time, place);

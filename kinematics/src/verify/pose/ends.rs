@@ -5,9 +5,11 @@
 
 use super::course::from_straight;
 use super::route::Waypoint;
+use super::swing::{are_at, from_position};
 use super::{FOUND_SLACK, MEETING_SLACK, PoseJudge, PoseViolation};
 use crate::great_circle::angle_between;
 use crate::numeric::{JUMP_SLACK, TIME_SLACK};
+use crate::pose::ToolPose;
 use crate::pose_leg::PosePath;
 use crate::pose_piece::PosePiece;
 use crate::verify::report::Peak;
@@ -110,6 +112,19 @@ impl PoseJudge<'_> {
                             .sum::<f64>(),
                 )
             }
+            PosePiece::Rotary(moved) => {
+                let start = &moved.tip;
+                let end = start.velocity
+                    + (start.acceleration + start.jerk * (0.5 * duration)) * duration;
+                let rotary = || moved.rotary.iter().flatten();
+                let rates: f64 = rotary().map(|cubic| slope(cubic, duration).abs()).sum();
+                let of_tip = [start.velocity, start.acceleration, start.jerk];
+                (
+                    end.norm() + rates,
+                    of_tip.iter().map(|vector| vector.norm()).sum::<f64>()
+                        + rotary().map(swing).sum::<f64>(),
+                )
+            }
             PosePiece::Axes(moved) => (
                 moved
                     .positions
@@ -127,6 +142,11 @@ impl PoseJudge<'_> {
         self.moving = moving;
         self.pose = match piece {
             PosePiece::Tool(tool) => Some(tool.end),
+            PosePiece::Rotary(moved) => {
+                let (tip, at) = moved.at(duration, &self.follower.near);
+                let tool = self.follower.machine.forward(&at).ok();
+                tool.map(|tool| ToolPose::rounded(tip, tool.orientation()))
+            }
             PosePiece::Axes(moved) => self.follower.machine.forward(&moved.end).ok(),
         };
         self.stand(first.saturating_sub(1), last, self.rested);
@@ -143,12 +163,19 @@ impl PoseJudge<'_> {
         };
         let time = self.time;
         if let Some(pose) = self.pose {
+            let follower = &self.follower;
             self.route.each_end(first, last, |leg, end| {
-                let PosePath::Tool { tip, turn } = &leg.path else {
+                let Some(tip) = leg.tip() else {
                     return;
                 };
                 end.tip = ((pose.tip() - tip[1]).norm(), time);
-                let angle = angle_between(&pose.orientation(), &turn.end());
+                let angle = match &leg.path {
+                    PosePath::Rotary { axes, .. } => {
+                        from_position(follower.machine, &follower.near, &axes[1])
+                    }
+                    PosePath::Tool { turn, .. } => angle_between(&pose.orientation(), &turn.end()),
+                    _ => return,
+                };
                 end.orientation = (angle, time);
             });
         }
@@ -157,7 +184,7 @@ impl PoseJudge<'_> {
 
     /// Notes of the ends of legs whether the motion rests there now.
     fn stand(&mut self, first: u32, last: u32, rested: f64) {
-        let near = self.follower.near;
+        let (machine, near) = (self.follower.machine, self.follower.near);
         let (pose, moving) = (self.pose, self.moving);
         self.route.each_end(first, last, |leg, end| {
             let there = match &leg.path {
@@ -165,6 +192,10 @@ impl PoseJudge<'_> {
                     (pose.tip() - tip[1]).norm() < MEETING_SLACK
                         && (pose.orientation() - turn.end()).norm() < MEETING_SLACK
                 }),
+                PosePath::Rotary { tip, axes, .. } => {
+                    pose.is_some_and(|pose| (pose.tip() - tip[1]).norm() < MEETING_SLACK)
+                        && are_at(machine, &near, &axes[1])
+                }
                 PosePath::Axes { end, .. } => from_straight(&near, end, end) < MEETING_SLACK,
                 PosePath::Dwell { .. } => true,
             };

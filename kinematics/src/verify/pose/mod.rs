@@ -12,6 +12,7 @@ mod ends;
 mod report;
 mod route;
 mod set_points;
+mod swing;
 
 pub use report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
 pub use set_points::PoseSetPointJudge;
@@ -25,6 +26,7 @@ use crate::pose_leg::PoseLeg;
 use crate::pose_piece::PosePiece;
 use axes::{Derivatives, Follower};
 use route::Route;
+use swing::Swing;
 
 /// Relative room granted to limits that were found by interpolation: its error and its rounding.
 const FOUND_SLACK: f64 = 1e-4;
@@ -143,6 +145,7 @@ impl<'m> PoseJudge<'m> {
         self.judge_axes(piece, place);
         match piece {
             PosePiece::Tool(tool) => self.judge_tool(tool, first, last),
+            PosePiece::Rotary(moved) => self.judge_rotary(moved, first, last),
             PosePiece::Axes(moved) => {
                 let machine = self.follower.machine;
                 self.see_speed(moved, first);
@@ -159,6 +162,12 @@ impl<'m> PoseJudge<'m> {
                         known
                     };
                     self.judge_course(&mut sound, duration, first, last);
+                    let positions = moved.positions.iter().map(|cubic| Some(*cubic)).collect();
+                    self.judge_swing(
+                        &Swing::of(self.follower.machine, positions, duration),
+                        first,
+                        last,
+                    );
                 }
             }
         }

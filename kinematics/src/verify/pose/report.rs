@@ -4,6 +4,7 @@
 
 use super::super::coarse::Gaps;
 use super::super::report::{Peak, Place};
+use crate::machine::AxisKind;
 use thiserror::Error;
 
 /// How many violations of one kind a report quotes; all are counted.
@@ -139,6 +140,32 @@ pub enum AxisQuantity {
     Jerk,
 }
 
+/// A value of an axis as a machinist reads it: rotary axes in degrees.
+fn shown(value: f64, kind: AxisKind) -> f64 {
+    match kind {
+        AxisKind::Linear => value,
+        AxisKind::Rotary => value.to_degrees(),
+    }
+}
+
+/// The unit in which it is shown.
+fn unit(kind: AxisKind) -> &'static str {
+    match kind {
+        AxisKind::Linear => "mm",
+        AxisKind::Rotary => "deg",
+    }
+}
+
+impl AxisQuantity {
+    fn per_time(self) -> &'static str {
+        match self {
+            Self::Velocity => "/s",
+            Self::Acceleration => "/s²",
+            Self::Jerk => "/s³",
+        }
+    }
+}
+
 impl std::fmt::Display for AxisQuantity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -155,14 +182,20 @@ impl std::fmt::Display for AxisQuantity {
 pub enum PoseViolation {
     /// A limit of an axis is exceeded.
     #[error(
-        "axis {axis}: {quantity} {value} exceeds the limit of {limit} at {time:.3} s ({place})"
+        "axis {axis}: {quantity} {} exceeds the limit of {} {}{} at {time:.3} s ({place})",
+        shown(*value, *kind),
+        shown(*limit, *kind),
+        unit(*kind),
+        quantity.per_time()
     )]
     Axis {
         /// Letter of the axis.
         axis: char,
+        /// What it moves in.
+        kind: AxisKind,
         /// Which limit.
         quantity: AxisQuantity,
-        /// The value, in mm or rad.
+        /// The value, in mm or rad; told in mm or degrees.
         value: f64,
         /// The limit.
         limit: f64,
@@ -233,6 +266,24 @@ pub enum PoseViolation {
         /// The move that ends in the orientation.
         place: Place,
     },
+    /// A rotary axis leaves the way that its words say.
+    #[error(
+        "axis {axis} is {} deg from its way, but may be {} deg at {time:.3} s ({place})",
+        value.to_degrees(),
+        tolerance.to_degrees()
+    )]
+    RotaryDeviation {
+        /// Letter of the axis.
+        axis: char,
+        /// How far it is from it.
+        value: f64,
+        /// How far it may be: [`crate::OrientationTolerance::OF_AXIS`] times the tolerance of the orientation.
+        tolerance: f64,
+        /// When.
+        time: f64,
+        /// Where.
+        place: Place,
+    },
     /// The axes leave a straight move of axes.
     #[error("the axes are {value} from their straight move at {time:.3} s ({place})")]
     AxesDeviation {
@@ -274,13 +325,19 @@ pub enum PoseViolation {
         place: Place,
     },
     /// Tool or axes jump between two pieces.
-    #[error("axis {axis}: {what} jumps by {value} at {time:.3} s ({place})")]
+    #[error(
+        "axis {axis}: {what} jumps by {} {} at {time:.3} s ({place})",
+        shown(*value, *kind),
+        unit(*kind)
+    )]
     Jump {
         /// Letter of the axis.
         axis: char,
+        /// What it moves in.
+        kind: AxisKind,
         /// Position, velocity or acceleration.
         what: &'static str,
-        /// By how much, in mm or rad.
+        /// By how much, in mm or rad; told in mm or degrees.
         value: f64,
         /// When.
         time: f64,
@@ -309,7 +366,7 @@ pub enum PoseViolation {
 
 impl PoseViolation {
     /// How many kinds there are.
-    pub(super) const KINDS: usize = 13;
+    pub(super) const KINDS: usize = 14;
 
     fn kind(&self) -> usize {
         match self {
@@ -326,6 +383,7 @@ impl PoseViolation {
             Self::Jump { .. } => 10,
             Self::NotFinite { .. } => 11,
             Self::MovesOutOfOrder { .. } => 12,
+            Self::RotaryDeviation { .. } => 13,
         }
     }
 }

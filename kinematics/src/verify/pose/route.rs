@@ -40,7 +40,7 @@ impl Route {
             leg.tip_tolerance.length(),
             leg.orientation_tolerance.angle(),
         );
-        let is_tool = matches!(leg.path, PosePath::Tool { .. });
+        let is_tool = leg.tip().is_some();
         if is_tool
             && let Some((_, before)) = self.legs.back_mut()
             && let Some(smaller) = &mut before.tolerances

@@ -81,6 +81,7 @@ impl PoseSetPointJudge<'_> {
                     if self.report.examples.len() < 10 {
                         self.report.examples.push(PoseViolation::Axis {
                             axis: axis.name,
+                            kind: axis.kind,
                             quantity,
                             value: certain,
                             limit,

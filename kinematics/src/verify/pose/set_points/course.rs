@@ -7,6 +7,7 @@
 use super::PoseSetPointJudge;
 use super::parts::Row;
 use crate::axis_vector::AxisVector;
+use crate::machine::AxisKind;
 use crate::pose::ToolPose;
 use crate::vector::Vector;
 
@@ -25,6 +26,12 @@ impl PoseSetPointJudge<'_> {
             axes: *at,
             pose: *pose,
             from: *pose,
+            rotary: std::array::from_fn(|axis| {
+                let axis = self.axes.get(axis);
+                axis.is_some_and(|axis| axis.kind == AxisKind::Rotary)
+            }),
+            swings: self.machine.swings(at).unwrap_or_default(),
+            axes_before: *at,
             slack,
             bulge: [0.0; 2],
         };
@@ -41,6 +48,7 @@ impl PoseSetPointJudge<'_> {
         self.follow(&held, bends);
         if let Some(next) = &mut self.held {
             next.from = held.pose;
+            next.axes_before = held.axes;
         }
         self.before = Some(held);
         self.bends = bends;

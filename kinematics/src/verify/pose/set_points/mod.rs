@@ -116,6 +116,10 @@ impl<'m> PoseSetPointJudge<'m> {
         self.moves = self.moves.saturating_add(1);
         self.end = match &leg.path {
             PosePath::Tool { tip, turn } => ToolPose::new(tip[1], turn.end()).ok(),
+            PosePath::Rotary { tip, axes, .. } => {
+                let tool = self.machine.forward(&axes[1]).ok();
+                tool.and_then(|tool| ToolPose::new(tip[1], tool.orientation()).ok())
+            }
             _ => None,
         };
         self.place = place;
@@ -229,13 +233,13 @@ impl<'m> PoseSetPointJudge<'m> {
                     tolerance,
                     place,
                 },
-                (Way::Arc(_), false) => PoseViolation::OrientationDeviation {
+                (Way::Arc(_) | Way::Rotary(_), false) => PoseViolation::OrientationDeviation {
                     value,
                     tolerance,
                     time,
                     place,
                 },
-                (Way::Arc(_), true) => PoseViolation::OrientationCorner {
+                (Way::Arc(_) | Way::Rotary(_), true) => PoseViolation::OrientationCorner {
                     value,
                     tolerance,
                     place,

@@ -3,16 +3,20 @@
 //! Source: distances from segments and arcs, less what rounding may add to them. A move in which the tip
 //! stands still belongs to the part before of the tip, and likewise for the tool. Not here: which part a row is on.
 
-use crate::axis_vector::AxisVector;
+use crate::axis_vector::{AxisVector, MOST_AXES};
 use crate::great_circle::GreatCircle;
 use crate::numeric::SHORTEST_LENGTH;
 use crate::pose::ToolPose;
 use crate::pose_leg::{PoseLeg, PosePath};
+use crate::tolerance::OrientationTolerance;
 use crate::vector::Vector;
 use crate::verify::pose::STRAIGHT_SLACK;
 use crate::verify::pose::away::{from_arc, from_segment};
 use crate::verify::pose::course::from_straight;
 use crate::verify::report::Place;
+
+/// Share of the difference of an axis that counts where the tool does not tell it.
+const FLOOR: f64 = 1.0 / OrientationTolerance::OF_AXIS;
 
 /// What is followed along the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +35,12 @@ pub(super) struct Row {
     pub(super) pose: ToolPose,
     /// Pose of the row before; its own for the first.
     pub(super) from: ToolPose,
+    /// Which axes are rotary.
+    pub(super) rotary: [bool; MOST_AXES],
+    /// Directions in which the tool moves with each rotary axis.
+    pub(super) swings: [Vector<3>; MOST_AXES],
+    /// Axis positions of the row before; its own for the first.
+    pub(super) axes_before: AxisVector,
     /// What rounding may do to the tip, mm, and to the orientation, rad.
     pub(super) slack: [f64; 2],
     /// How far tip and orientation may be from the chord between the two rows.
@@ -42,6 +52,8 @@ pub(super) struct Row {
 pub(super) enum Way {
     Line([Vector<3>; 2]),
     Arc(GreatCircle),
+    /// Rotary axes that go evenly: where they begin and end.
+    Rotary(Box<[AxisVector; 2]>),
     /// A straight move of axes.
     Axes(Box<[AxisVector; 2]>),
 }
@@ -57,6 +69,43 @@ pub(super) struct Part {
     pub(super) at_end: f64,
 }
 
+impl Row {
+    /// How far a position of the rotary axes is from a straight way of theirs, in what the tool shows of it, rad; an axis
+    /// that it does not show counts by a share. What the tool shows bends by less than the square of the difference.
+    fn shown(&self, at: &AxisVector, start: &AxisVector, end: &AxisVector) -> f64 {
+        let (mut span, mut gone) = (Vector::<3>::zeros(), Vector::<3>::zeros());
+        let (mut squares, mut products) = (0.0, 0.0);
+        let rotary = || {
+            self.swings
+                .iter()
+                .enumerate()
+                .filter(|(axis, _)| self.rotary[*axis])
+                .map(|(axis, swing)| (swing, end[axis] - start[axis], at[axis] - start[axis]))
+        };
+        for (swing, whole, part) in rotary() {
+            span += swing * whole;
+            gone += swing * part;
+            squares += FLOOR * FLOOR * whole * whole;
+            products += FLOOR * FLOOR * whole * part;
+        }
+        squares += span.norm_squared();
+        products += span.dot(&gone);
+        let share = if squares > 0.0 {
+            (products / squares).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let (mut most, mut sum) = (0.0_f64, 0.0);
+        for (_, whole, part) in rotary() {
+            let away = (part - share * whole).abs();
+            most = most.max(away);
+            sum += away;
+        }
+        let shown = (gone - span * share).norm();
+        (shown - (sum * sum).min(shown)).max(FLOOR * most)
+    }
+}
+
 impl Part {
     /// Whether it is a straight move of axes.
     pub(super) fn is_of_axes(&self) -> bool {
@@ -69,6 +118,7 @@ impl Part {
         let away = match &self.way {
             Way::Line([start, end]) => from_segment(&row.pose.tip(), start, end) - tip,
             Way::Arc(turn) => from_arc(&row.pose.orientation(), turn) - tool,
+            Way::Rotary(ends) => row.shown(&row.axes, &ends[0], &ends[1]) - tool,
             Way::Axes(ends) => from_straight(&row.axes, &ends[0], &ends[1]) - tip - tool,
         };
         away.max(0.0)
@@ -85,6 +135,9 @@ impl Part {
             Way::Arc(turn) => {
                 let (from, to) = (row.from.orientation(), row.pose.orientation());
                 from_segment(&turn.end(), &from, &to) - row.slack[1] - row.bulge[1]
+            }
+            Way::Rotary(ends) => {
+                row.shown(&ends[1], &row.axes_before, &row.axes) - row.slack[1] - row.bulge[1]
             }
             Way::Axes(_) => 0.0,
         };
@@ -104,6 +157,16 @@ pub(super) fn add(parts: &mut Vec<Part>, followed: Followed, leg: &PoseLeg, plac
             Way::Arc(*turn),
             leg.orientation_tolerance.angle(),
             turn.angle() > 0.0,
+        ),
+        (PosePath::Rotary { tip, .. }, Followed::Tip) => (
+            Way::Line(*tip),
+            leg.tip_tolerance.length(),
+            leg.length() > SHORTEST_LENGTH,
+        ),
+        (PosePath::Rotary { axes, .. }, Followed::Tool) => (
+            Way::Rotary(Box::new(*axes)),
+            leg.orientation_tolerance.angle(),
+            axes[0] != axes[1],
         ),
         (PosePath::Axes { start, end }, _) => {
             (Way::Axes(Box::new([*start, *end])), STRAIGHT_SLACK, true)
