@@ -10,13 +10,10 @@ fn course(far: f64) -> Course<3> {
     let mut legs = Vec::new();
     for k in 0..40_u32 {
         let radius = 0.3 + f64::from(k * k % 17) * 0.6;
-        let mut center = at;
-        center[0] += radius;
+        let center = [at[0] + radius, at[1], at[2]];
         at[0] += 2.0 * radius;
         at[1] += if k % 3 == 0 { radius } else { 0.0 };
         if k % 3 == 0 {
-            center[0] = at[0] - radius;
-            center[1] = at[1] - radius;
             let corner = [at[0] - radius, at[1], at[2]];
             legs.push(go(Lead::Line(corner), 50.0, 0.01));
             legs.push(go(Lead::Line(at), 80.0, 0.01));
