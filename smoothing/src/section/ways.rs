@@ -27,6 +27,9 @@ const COARSE_SHARE: f64 = 0.3;
 const MOST_EFFORT: usize = 12_000;
 const EFFORT: usize = 16;
 
+/// Share of the tolerance within which corners are passed in their turn.
+const ORDER_SHARE: f64 = 0.999;
+
 /// Fewest legs worth superposing.
 const FEWEST_LEGS: usize = 2;
 
@@ -103,7 +106,12 @@ impl<const N: usize> Ways<N> {
             };
             (coarse, self.effort) = stretches.superpose_whole(&self.coarse, least, effort);
         }
-        let superposed = coarse.is_some() || fine.is_some();
+        // Corners that were merged must be passed in their turn, too.
+        let corners = vertices.windows(2).map(|pair| {
+            let tolerance = pair[0].tolerance.min(pair[1].tolerance);
+            (pair[0].point, ORDER_SHARE * tolerance.length())
+        });
+        let superposed = (coarse.is_some() || fine.is_some()) && stretches.whole_passes(corners);
         if superposed {
             self.fastest = None;
             stretches.travel_whole();

@@ -181,6 +181,11 @@ impl<const N: usize> Stretches<N> {
             .plan_whole(legs, ideal.at_feedrate, most, effort)
     }
 
+    /// Whether that comes as near to points as is said, one after the other.
+    pub(crate) fn whole_passes(&self, points: impl Iterator<Item = (Vector<N>, f64)>) -> bool {
+        self.superposer.passes(points)
+    }
+
     /// What was planned last in this way is pulled next.
     pub(crate) fn travel_whole(&mut self) {
         self.superposer.travel();

@@ -7,6 +7,7 @@
 use super::Superposer;
 use super::pace::Filter;
 use crate::leg::Leg;
+use toolglide_kinematics::Vector;
 
 /// A filter that is tried: the time step of a spline of its width, as a share of the ramp, the sharpening, the
 /// stiffness, and how many steps its means have.
@@ -83,6 +84,11 @@ impl<const N: usize> Superposer<N> {
             }
         }
         (shortest, std::mem::replace(&mut self.effort, usize::MAX))
+    }
+
+    /// Whether what was planned last comes as near to points as is said, one after the other.
+    pub(crate) fn passes(&self, points: impl Iterator<Item = (Vector<N>, f64)>) -> bool {
+        self.best.passes(points)
     }
 
     /// What was planned last is the best; its duration.

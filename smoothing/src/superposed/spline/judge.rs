@@ -167,10 +167,20 @@ impl<const N: usize> Spline<N> {
     }
 
     /// Whether the motion passes all corners of the curve within their tolerance one after the other.
-    #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
     pub(in crate::superposed) fn passes_in_order(&self, curve: &Curve<N>) -> bool {
+        let last = curve.legs().len().saturating_sub(1);
+        let corners = curve.legs()[..last].iter();
+        self.passes(corners.map(|leg| (leg.end, leg.room().length())))
+    }
+
+    /// Whether the motion comes as near to points as is said, one after the other.
+    #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
+    pub(in crate::superposed) fn passes(
+        &self,
+        points: impl Iterator<Item = (Vector<N>, f64)>,
+    ) -> bool {
         let cuts = PARTS[1];
-        let mut corners = curve.legs().iter().rev().skip(1).rev().peekable();
+        let mut corners = points.peekable();
         for piece in 0..self.pieces() {
             let [a, b, c, d] = self.four(piece).map(|control| control.point);
             let second = (c - b * 2.0 + a).norm().max((d - c * 2.0 + b).norm());
@@ -178,8 +188,8 @@ impl<const N: usize> Spline<N> {
             let mut from = (a + b * 4.0 + c) / 6.0;
             for cut in 1..=cuts {
                 let to = at(&[a, b, c, d], cut as f64 / cuts as f64);
-                while let Some(leg) = corners.peek()
-                    && distance_to(&leg.end, &from, &to) + sagitta <= leg.room().length()
+                while let Some((point, room)) = corners.peek()
+                    && distance_to(point, &from, &to) + sagitta <= *room
                 {
                     corners.next();
                 }
