@@ -177,11 +177,11 @@ impl<const N: usize> Route<N> {
         }
     }
 
-    /// Share of the tolerance that the chords of an arc may use.
-    fn chord_share(&self) -> f64 {
+    /// The chords of an arc.
+    fn chords_of(&self, arc: &Arc<N>, tolerance: f64) -> Chords<N> {
         match self {
-            Self::Corners(_) => crate::merge::MERGE_SHARE,
-            _ => crate::stretch::FINE_SHARE,
+            Self::Corners(_) => Chords::new(*arc, crate::merge::MERGE_SHARE * tolerance),
+            _ => Chords::fine(*arc, crate::stretch::FINE_SHARE * tolerance),
         }
     }
 }
@@ -198,8 +198,7 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
                 }
             }
             Path::Arc(arc) => {
-                let share = self.route.chord_share();
-                let chords = Chords::new(*arc, share * next.tolerance().length());
+                let chords = self.route.chords_of(arc, next.tolerance().length());
                 if self.route.takes_alone(&chords) {
                     self.route.rest();
                 } else {

@@ -71,6 +71,13 @@ impl<const N: usize> Selection<N> {
             .map(|turn| *turn.shape())
     }
 
+    /// The interrupted corner as if the moves beside it were long.
+    pub(crate) fn interrupted(&self, corner: &Corner<N>) -> TurnShape {
+        self.interrupted
+            .blend(corner)
+            .map_or(TurnShape::STOP, |turn| *turn.shape())
+    }
+
     /// The motion for a corner between moves of two lengths.
     pub(crate) fn shape(&self, corner: &Corner<N>, before: f64, after: f64) -> TurnShape {
         let interrupted = || self.interrupted.blend(corner).map(|turn| *turn.shape());

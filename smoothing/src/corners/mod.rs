@@ -317,6 +317,8 @@ impl<const N: usize> Corners<N> {
                 for (selection, window) in self.selections.iter().zip(&mut self.windows) {
                     let shape = if last.stop {
                         TurnShape::STOP
+                    } else if self.stops_allowed && goes_round(&last, &leg) {
+                        selection.interrupted(&corner)
                     } else {
                         selection.shape(&corner, before, whole)
                     };
@@ -350,6 +352,9 @@ const SHORTEST_WINDOW: usize = 2;
 /// Fewest corners among whose motions the fastest way is sought.
 const FEWEST_WAYS: usize = 16;
 
+/// Largest turn between two chords of an arc at which only interrupted corners are tried, rad.
+const ROUND: f64 = 0.2;
+
 /// How a path begins.
 const AT_REST: Choice = Choice {
     shape: TurnShape::STOP,
@@ -362,6 +367,12 @@ fn share_of(method: Method) -> f64 {
         Method::KcsLocal | Method::KcsGlobal => ROUNDING_SHARE,
         _ => MERGE_SHARE,
     }
+}
+
+/// Whether two legs are chords of one arc that turn little, as most do: what an interrupted corner loses there is not
+/// worth what it costs to try others at every chord.
+fn goes_round<const N: usize>(leg: &Leg<N>, next: &Leg<N>) -> bool {
+    !leg.ends_before(next) && (next.direction - leg.direction).norm() < ROUND
 }
 
 fn link_of<const N: usize>(leg: &Leg<N>) -> Link {

@@ -2,7 +2,7 @@
 //!
 //! Source: ours. Not here: how the candidates are made, and the choice among them.
 
-use super::{Corners, corner_tolerance, link_of};
+use super::{Corners, corner_tolerance, goes_round, link_of};
 use crate::lattice::MOST_CANDIDATES;
 use crate::method::Method;
 use crate::overlap::Between;
@@ -38,7 +38,8 @@ impl<const N: usize> Corners<N> {
                 }
             }
             let next = self.legs.get(self.offered + 1).or(self.pending.as_ref());
-            let fixed = leg.stop || leg.cruises;
+            let within_arc = self.stops_allowed && next.is_some_and(|next| goes_round(leg, next));
+            let fixed = leg.stop || leg.cruises || within_arc;
             if leg.stop {
                 count = 0;
             }

@@ -16,6 +16,28 @@ pub(super) const FEWEST_LEGS: usize = 4;
 /// How much faster than the plan by corners a stretch at the feedrate would have to be.
 const WORTH_TRYING: f64 = 0.996;
 
+/// How much longer than its way at the feedrate, with a start and a stop, a stretch with arcs takes that need not be
+/// planned in other ways.
+const NEAR: f64 = 1.001;
+
+/// Share of the time that a start and a stop take along the path that they take in any direction.
+const ANY_DIRECTION: f64 = 0.55;
+
+/// No way from rest to rest takes less along these legs within their tolerance: inside of all turns the way is
+/// shorter by the tolerance for each radian, and speed is gained at the most as if all axes helped.
+fn least_alone<const N: usize>(legs: &[Leg<N>]) -> f64 {
+    let ideal = Ideal::of(legs);
+    let length: f64 = legs.iter().map(|leg| leg.length).sum();
+    let saved: f64 = legs
+        .windows(2)
+        .map(|pair| {
+            let turn = (pair[1].direction - pair[0].direction).norm();
+            1.6 * turn * pair[0].tolerance.length()
+        })
+        .sum();
+    ideal.at_feedrate * (1.0 - saved / length).max(0.0) + ANY_DIRECTION * ideal.stop
+}
+
 /// How a stretch is travelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Choice {
@@ -122,6 +144,15 @@ impl<const N: usize> Stretches<N> {
     /// How a stretch is travelled fastest from rest to rest, and its duration. With superposed corners it
     /// is planned when that is chosen.
     pub(super) fn choose(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
+        if self.has_arc(legs) {
+            let ideal = Ideal::of(legs);
+            let most = NEAR * (ideal.at_feedrate + ideal.stop);
+            if legs.len() >= FEWEST_LEGS
+                && let Some(duration) = self.superposer.plan(legs, ideal.at_feedrate, most)
+            {
+                return (Choice::Superposed(None), duration);
+            }
+        }
         let (mut choice, mut least) = self.without_superposing(legs);
         if let Some(duration) = self.superpose(legs, least) {
             (choice, least) = (Choice::Superposed(None), duration);
@@ -136,12 +167,19 @@ impl<const N: usize> Stretches<N> {
         // afresh where the motion stops beside it.
         let several = legs.windows(2).any(|pair| pair[0].ends_before(&pair[1]));
         if several && self.has_arc(legs) {
-            let apart: f64 = legs
-                .chunk_by(|leg, next| !leg.ends_before(next))
-                .map(|group| self.alone(group))
-                .sum();
-            if apart < by_corners {
-                return (Choice::Apart, apart);
+            let moves = || legs.chunk_by(|leg, next| !leg.ends_before(next));
+            let least: f64 = moves().map(least_alone).sum();
+            if least < by_corners {
+                let mut apart = 0.0;
+                for group in moves() {
+                    apart += self.alone(group);
+                    if apart >= by_corners {
+                        break;
+                    }
+                }
+                if apart < by_corners {
+                    return (Choice::Apart, apart);
+                }
             }
         }
         (Choice::Corners(material), by_corners)
