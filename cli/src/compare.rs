@@ -14,7 +14,7 @@ use crate::plot::{Caption, Feeds};
 use crate::setup::Setup;
 use crate::shown::show;
 use crate::source::Source;
-use crate::travel::OnAxes;
+use crate::travel::{OnAxes, by_axes};
 use std::io::Write;
 use toolglide_kinematics::Move;
 use toolglide_kinematics::verify::Judge;
@@ -26,10 +26,7 @@ pub(crate) fn compare(
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
     let setup = Setup::new(&args.job, None)?;
-    match setup.axes.len() {
-        2 => run::<2>(args, &setup, out, err),
-        _ => run::<3>(args, &setup, out, err),
-    }
+    by_axes!(setup.axes.len(), run(args, &setup, out, err))
 }
 
 fn run<const N: usize>(
@@ -80,7 +77,7 @@ where
             break;
         }
     }
-    let blocks = moves.program.blocks();
+    let blocks = moves.program.program().blocks();
     let results: Vec<_> = lanes.into_iter().map(Lane::finish).collect();
     let stop = place_of_stop
         .map_or(results.last(), |place| results.get(place))
@@ -90,7 +87,7 @@ where
         .zip(&results)
         .map(|(method, (report, time))| MethodRow::of(method, report, *time, blocks, stop))
         .collect();
-    warn(&moves.program, err);
+    warn(moves.program.program(), err);
     let comparison = Comparison::new(&name, setup, blocks, rows);
     if let (Some(mut drawing), Some(feeds)) = (drawing, feeds) {
         let caption = Caption {

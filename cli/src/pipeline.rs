@@ -12,7 +12,7 @@ use std::io::BufRead;
 use std::time::{Duration, Instant};
 use toolglide_kinematics::verify::{Judge, Report};
 use toolglide_kinematics::{MotionPlanner, Move, Piece, WindowTally};
-use toolglide_program::Program;
+use toolglide_program::AxisMoves;
 
 /// Moves that are read before any of them is planned.
 const MOVES: usize = 512;
@@ -22,8 +22,10 @@ const PIECES: usize = 512;
 
 /// The moves of a program on the axes of a machine, checked.
 pub(crate) struct Moves<R, const N: usize> {
-    pub(crate) program: Program<R>,
+    pub(crate) program: AxisMoves<R>,
     pub(crate) name: String,
+    /// Letters of the axes.
+    pub(crate) letters: [char; N],
     pub(crate) travel: Travel<N>,
 }
 
@@ -37,11 +39,12 @@ where
             return Ok(None);
         };
         let next = next.map_err(|refused| CliError::Program(Box::new(refused)))?;
-        let on_axes = Move::<N>::on_axes(&next).ok_or_else(|| CliError::Line {
-            program: self.name.clone(),
-            line: next.line(),
-            reason: "the move needs an axis that the machine has not".to_owned(),
-        })?;
+        let on_axes =
+            Move::<N>::on_axes(&next, &self.letters).map_err(|reason| CliError::Line {
+                program: self.name.clone(),
+                line: next.line(),
+                reason,
+            })?;
         self.travel.check(&on_axes, &self.name)?;
         Ok(Some(on_axes))
     }
@@ -70,7 +73,7 @@ pub(crate) struct Pipeline<'a, R, const N: usize> {
 
 /// What came out.
 pub(crate) struct Outcome<R, const N: usize> {
-    pub(crate) program: Program<R>,
+    pub(crate) program: AxisMoves<R>,
     pub(crate) report: Report<N>,
     pub(crate) rows: u64,
     pub(crate) planning_time: Duration,

@@ -14,7 +14,7 @@ use crate::setup::Setup;
 use crate::shown::{show, show_beside_rows};
 use crate::source::{Source, subroutines, with_parameters};
 use crate::summary::{Summary, clock};
-use crate::travel::{OnAxes, Travel};
+use crate::travel::{OnAxes, Travel, by_axes};
 use std::io::{BufRead, Write};
 use std::path::Path;
 use toolglide_kinematics::Move;
@@ -31,10 +31,7 @@ pub(crate) fn plan(
         return crate::poses::plan(args, out, err);
     }
     let setup = Setup::new(&args.job, args.period)?;
-    match setup.axes.len() {
-        2 => Job::<2>::run(args, &setup, out, err),
-        _ => Job::<3>::run(args, &setup, out, err),
-    }
+    by_axes!(setup.axes.len(), run(args, &setup, out, err))
 }
 
 /// The moves of a program for the machine of a run.
@@ -57,8 +54,10 @@ pub(crate) fn moves<const N: usize>(
         .with_tools(setup.tools.clone())
         .with_reference_points(&setup.reference_points)
         .with_subroutines(subroutines(&job.program));
+    let (beside, start) = setup.beside();
     Ok(Moves {
-        program: with_parameters(program, &job.parameters)?,
+        program: with_parameters(program, &job.parameters)?.on_all_axes(beside, start),
+        letters: setup.letters_of(),
         name: source.name,
         travel: Travel::of(&setup.axes),
     })
@@ -74,50 +73,46 @@ pub(crate) fn warn<R: BufRead>(program: &Program<R>, err: &mut dyn Write) {
     }
 }
 
-struct Job<const N: usize>;
-
-impl<const N: usize> Job<N>
+fn run<const N: usize>(
+    args: &PlanArgs,
+    setup: &Setup,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Result<u8, CliError>
 where
     Move<N>: OnAxes,
 {
-    fn run(
-        args: &PlanArgs,
-        setup: &Setup,
-        out: &mut dyn Write,
-        err: &mut dyn Write,
-    ) -> Result<u8, CliError> {
-        let method = args.method.as_deref().unwrap_or(METHODS[0].name);
-        let mut files = PlanFiles::begin(args)?;
-        let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
-        let name = source.name.clone();
-        let start = setup.start::<N>();
-        let limits = setup.limits::<N>();
-        let tuning = Tuning::of(&args.tuning, setup)?;
-        let drawn = files.drawing.is_some();
-        let destination = files.rows.destination(out);
-        let outcome = Pipeline {
-            moves: moves(&args.job, setup, source)?,
-            planner: planner(method, start, limits, &tuning)?,
-            judge: Judge::new(start, limits),
-            set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
-            plot: drawn.then(|| Plot::new(start, limits, setup.letters())),
-        }
-        .run()?;
-        let blocks = outcome.program.blocks();
-        let mut summary = Summary::of(&name, setup, &outcome.report, blocks, outcome.rows);
-        summary.method = Some(method.to_owned());
-        summary.period_s = Some(setup.period.seconds());
-        summary.planning_time_s = Some(outcome.planning_time.as_secs_f64());
-        summary.windows = outcome.windows.map(Into::into);
-        warn(&outcome.program, err);
-        if let (Some(drawing), Some(plot)) = (&mut files.drawing, outcome.plot) {
-            drawing.write(&plot.draw(&caption(&summary)))?;
-        }
-        if files.commit()? {
-            return show_beside_rows(&summary, err);
-        }
-        show(&summary, args.job.json, out, err)
+    let method = args.method.as_deref().unwrap_or(METHODS[0].name);
+    let mut files = PlanFiles::begin(args)?;
+    let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
+    let name = source.name.clone();
+    let start = setup.start::<N>();
+    let limits = setup.limits::<N>();
+    let tuning = Tuning::of(&args.tuning, setup)?;
+    let drawn = files.drawing.is_some();
+    let destination = files.rows.destination(out);
+    let outcome = Pipeline {
+        moves: moves(&args.job, setup, source)?,
+        planner: planner(method, start, limits, &tuning)?,
+        judge: Judge::new(start, limits),
+        set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
+        plot: drawn.then(|| Plot::new(start, limits, setup.letters())),
     }
+    .run()?;
+    let blocks = outcome.program.program().blocks();
+    let mut summary = Summary::of(&name, setup, &outcome.report, blocks, outcome.rows);
+    summary.method = Some(method.to_owned());
+    summary.period_s = Some(setup.period.seconds());
+    summary.planning_time_s = Some(outcome.planning_time.as_secs_f64());
+    summary.windows = outcome.windows.map(Into::into);
+    warn(outcome.program.program(), err);
+    if let (Some(drawing), Some(plot)) = (&mut files.drawing, outcome.plot) {
+        drawing.write(&plot.draw(&caption(&summary)))?;
+    }
+    if files.commit()? {
+        return show_beside_rows(&summary, err);
+    }
+    show(&summary, args.job.json, out, err)
 }
 
 /// A program on a picture: its name without its folder.

@@ -14,7 +14,7 @@ use crate::setup::Setup;
 use crate::shown::show;
 use crate::source::Source;
 use crate::standing::{Loss, MethodStanding, Sample, Standing, Sums};
-use crate::travel::OnAxes;
+use crate::travel::{OnAxes, by_axes};
 use std::io::Write;
 use toolglide_kinematics::{Limits, Move, Plan, Toolpath, Trajectory, verify};
 use toolglide_reference::{Course, Section, Settings, Window, Windows, certify, hold, part};
@@ -33,10 +33,7 @@ pub(crate) fn score(
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
     let setup = Setup::new(&args.job, None)?;
-    match setup.axes.len() {
-        2 => run::<2>(args, &setup, out, err),
-        _ => run::<3>(args, &setup, out, err),
-    }
+    by_axes!(setup.axes.len(), run(args, &setup, out, err))
 }
 
 fn run<const N: usize>(
@@ -61,7 +58,7 @@ where
             reason,
         })?;
     }
-    warn(&moves.program, err);
+    warn(moves.program.program(), err);
     drop(moves);
     let sampled = windows.finish();
     let methods = chosen(&args.methods);

@@ -10,11 +10,14 @@ use toolglide_kinematics::{
     Axis, AxisKind, AxisLimits, AxisVector, Limits, MachineKinematics, SamplePeriod, Tolerance,
     ToolPose, Vector,
 };
-use toolglide_machines::{MachineConfig, ModeConfig, find, load};
-use toolglide_program::ToolTable;
+use toolglide_machines::{MachineConfig, ModeConfig, find, is_plain, load};
+use toolglide_program::{AXES_BESIDE, ToolTable};
 
 /// Shortest period that is taken, s: below it a file of set-points has no end worth waiting for.
 const SHORTEST_PERIOD: f64 = 1e-9;
+
+/// Decimals beyond which a degree that was a rad shows its rounding.
+const DECIMALS: f64 = 1e9;
 
 /// The machine of a run.
 #[derive(Debug)]
@@ -73,18 +76,21 @@ pub(crate) fn is_straight(config: &MachineConfig, machine: &dyn MachineKinematic
 }
 
 impl Setup {
-    /// The machine that the command line asks for, which must have straight axes alone.
+    /// The machine that the command line asks for, whose axes the program must name itself. Rotary ones
+    /// are in degrees from here on, and a degree counts as a millimetre.
     pub(crate) fn new(job: &JobArgs, period: Option<f64>) -> Result<Self, CliError> {
         let (config, machine) = machine(&job.machine)?;
         let letters = config.letters();
-        if !is_straight(&config, machine.as_ref()) {
+        let plain = is_plain(&config);
+        if !is_straight(&config, machine.as_ref()) && !plain {
             return Err(CliError::Option {
                 option: "--machine",
                 value: format!("\"{}\" with axes {letters}", config.name),
-                bound: "this is done for machines of straight axes X Y or X Y Z".to_owned(),
+                bound: "this is done for machines whose axes the program moves itself: X Y, X Y Z, and A B C U V W beside them".to_owned(),
             });
         }
-        Self::of(config, machine.as_ref(), job, period)
+        let setup = Self::of(config, machine.as_ref(), job, period)?;
+        if plain { setup.in_degrees() } else { Ok(setup) }
     }
 
     /// A machine of any axes, with what the command line changes about it.
@@ -97,7 +103,7 @@ impl Setup {
         let axes = limited(machine.axes(), job)?;
         let start = match &job.start {
             Some(given) => started(&axes, given)?,
-            None if is_straight(&config, machine) => {
+            None if is_straight(&config, machine) || is_plain(&config) => {
                 started(&axes, &PerAxis(vec![0.0; axes.len()]))?
             }
             None => at_program_zero(machine),
@@ -143,14 +149,65 @@ impl Setup {
         Vector::from_fn(|axis, _| self.start[axis])
     }
 
+    /// Where an axis starts, if the machine has it.
+    fn start_of(&self, letter: char) -> Option<f64> {
+        let index = self.axes.iter().position(|axis| axis.name == letter);
+        index.map(|index| self.start[index])
+    }
+
     /// The start as the three coordinates of a program; an axis that is missing stays at 0.
     pub(crate) fn start_point(&self) -> Vector<3> {
-        Vector::from_fn(|axis, _| self.start.get(axis).copied().unwrap_or(0.0))
+        ['X', 'Y', 'Z']
+            .map(|letter| self.start_of(letter).unwrap_or(0.0))
+            .into()
     }
 
     /// Which of X, Y and Z the machine has.
     pub(crate) fn has_axes(&self) -> [bool; 3] {
-        std::array::from_fn(|axis| axis < self.axes.len())
+        ['X', 'Y', 'Z'].map(|letter| self.start_of(letter).is_some())
+    }
+
+    /// Which of the axes beside X, Y and Z the machine has, and where they start, degrees and mm.
+    pub(crate) fn beside(&self) -> ([bool; 6], [f64; 6]) {
+        let start = AXES_BESIDE.map(|letter| self.start_of(letter));
+        (
+            start.map(|start| start.is_some()),
+            start.map(Option::unwrap_or_default),
+        )
+    }
+
+    /// The same with rotary axes in degrees.
+    fn in_degrees(mut self) -> Result<Self, CliError> {
+        let degrees = |angle: f64| (angle.to_degrees() * DECIMALS).round() / DECIMALS;
+        for (axis, start) in self.axes.iter_mut().zip(&mut self.start) {
+            if axis.kind == AxisKind::Rotary {
+                let limits = axis.limits;
+                axis.limits = AxisLimits::new(
+                    degrees(limits.velocity()),
+                    degrees(limits.acceleration()),
+                    degrees(limits.jerk()),
+                )
+                .map_err(|reason| CliError::Option {
+                    option: "--machine",
+                    value: format!("a limit of axis {}", axis.name),
+                    bound: reason.to_string(),
+                })?;
+                axis.travel = axis.travel.map(|(low, high)| (degrees(low), degrees(high)));
+                *start = degrees(*start);
+            }
+        }
+        Ok(self)
+    }
+
+    /// Letters of the axes; `N` is their number.
+    pub(crate) fn letters_of<const N: usize>(&self) -> [char; N] {
+        std::array::from_fn(|axis| self.axes.get(axis).map_or('?', |axis| axis.name))
+    }
+
+    /// What a length along the path of all axes is in.
+    pub(crate) fn path_unit(&self) -> &'static str {
+        let turns = self.axes.iter().any(|axis| axis.kind == AxisKind::Rotary);
+        if turns { "mm and degrees" } else { "mm" }
     }
 
     /// Letters of the axes.

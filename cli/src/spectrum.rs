@@ -15,7 +15,7 @@ use crate::setup::Setup;
 use crate::shown::{Shown, quoted, show};
 use crate::source::Source;
 use crate::summary::worst_first;
-use crate::travel::OnAxes;
+use crate::travel::{OnAxes, by_axes};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
@@ -42,10 +42,7 @@ pub(crate) fn spectrum(
         setup.modes.clone_from(&args.modes);
         setup.modes_asked = "--mode".to_owned();
     }
-    match setup.axes.len() {
-        2 => run::<2>(args, &setup, out, err),
-        _ => run::<3>(args, &setup, out, err),
-    }
+    by_axes!(setup.axes.len(), run(args, &setup, out, err))
 }
 
 /// A mode and the axis that excites it.
@@ -177,7 +174,7 @@ where
             break;
         }
     }
-    warn(&moves.program, err);
+    warn(moves.program.program(), err);
     let methods = names
         .iter()
         .zip(lanes)

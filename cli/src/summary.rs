@@ -6,8 +6,8 @@ use crate::setup::Setup;
 use crate::shown::{Shown, is_zero, quoted, verdict};
 use serde::Serialize;
 use std::fmt::Write;
-use toolglide_kinematics::WindowTally;
 use toolglide_kinematics::verify::{Peak, Report, Violation};
+use toolglide_kinematics::{AxisKind, WindowTally};
 
 /// What came out, as JSON names it.
 #[derive(Clone, Debug, Serialize)]
@@ -19,6 +19,11 @@ pub(crate) struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
     pub(crate) axes: Vec<char>,
+    /// Unit of each axis.
+    #[serde(skip)]
+    pub(crate) units: Vec<&'static str>,
+    #[serde(skip)]
+    pub(crate) path_unit: &'static str,
     pub(crate) cycle_time_s: f64,
     pub(crate) setpoints: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -90,6 +95,14 @@ impl Windows {
     }
 }
 
+/// The unit of positions.
+fn unit(kind: AxisKind) -> &'static str {
+    match kind {
+        AxisKind::Linear => "mm",
+        AxisKind::Rotary => "deg",
+    }
+}
+
 impl Summary {
     /// A summary of a report; what only a planner knows is added by whoever planned.
     pub(crate) fn of<const N: usize>(
@@ -107,6 +120,8 @@ impl Summary {
             set_points: None,
             method: None,
             axes: setup.letters(),
+            units: setup.axes.iter().map(|axis| unit(axis.kind)).collect(),
+            path_unit: setup.path_unit(),
             cycle_time_s: report.cycle_time,
             setpoints: set_points,
             period_s: None,
@@ -140,16 +155,25 @@ impl Summary {
     }
 
     fn axes_table(&self, text: &mut String) {
-        text.push_str("axis         velocity, mm/s      acceleration, mm/s²     jerk, mm/s³\n");
+        let turns = self.units.contains(&unit(AxisKind::Rotary));
+        text.push_str(if turns {
+            "axis         velocity, /s        acceleration, /s²       jerk, /s³\n"
+        } else {
+            "axis         velocity, mm/s      acceleration, mm/s²     jerk, mm/s³\n"
+        });
         for (axis, letter) in self.axes.iter().enumerate() {
             let cell = |peaks: &[f64], limits: &[f64]| {
                 let peak = peaks.get(axis).copied().unwrap_or(0.0);
                 let limit = limits.get(axis).copied().unwrap_or(f64::INFINITY);
                 format!("{peak:.1}  {:.1} %", 100.0 * peak / limit)
             };
+            let name = match self.units.get(axis) {
+                Some(unit) if turns => format!("{letter}, {unit}"),
+                _ => letter.to_string(),
+            };
             let _ = writeln!(
                 text,
-                "{letter:<12} {:<19} {:<23} {}",
+                "{name:<12} {:<19} {:<23} {}",
                 cell(&self.peak_velocity, &self.velocity_limit),
                 cell(&self.peak_acceleration, &self.acceleration_limit),
                 cell(&self.peak_jerk, &self.jerk_limit),
@@ -184,7 +208,7 @@ impl Shown for Summary {
             text,
             "{program}: {how}\n\n\
              cycle time   {clock}  ({cycle:.3} s; {rows} set-points{period})\n\
-             path         {length:.3} mm in {moves} moves from {blocks} blocks\n\
+             path         {length:.3} {unit} in {moves} moves from {blocks} blocks\n\
              feedrate     {average:.1} mm/s on average, {fastest:.1} mm/s at most ({per_minute:.0} mm/min)\n\
              deviation    {deviation:.5} mm from the path, {share:.1} % of the tolerance\n\
              corners      passed within {corner:.5} mm, {corner_share:.1} % of the tolerance\n\n",
@@ -193,6 +217,7 @@ impl Shown for Summary {
             cycle = self.cycle_time_s,
             rows = self.setpoints,
             length = self.path_length_mm,
+            unit = self.path_unit,
             moves = self.moves,
             blocks = self.blocks,
             fastest = self.peak_speed_mm_s,

@@ -4,7 +4,11 @@
 
 use crate::error::CliError;
 use toolglide_kinematics::numeric::LENGTH_SLACK;
-use toolglide_kinematics::{Arc, Axis, Move, Path, Vector};
+use toolglide_kinematics::{Arc, Axis, Move, Path, ToolpathError, Vector};
+use toolglide_program::AxisMove;
+
+/// Why a move is refused.
+const NEEDS_ANOTHER: &str = "the move needs an axis that the machine has not";
 
 /// The ends of all axes.
 #[derive(Clone, Debug)]
@@ -78,53 +82,98 @@ fn farthest<const N: usize>(arc: &Arc<N>) -> Vec<Vector<N>> {
 
 /// A move of a program on the axes of a machine.
 pub(crate) trait OnAxes: Sized {
-    /// The move without the axes that the machine has not; `None` for an arc that needs them.
-    fn on_axes(next: &Move<3>) -> Option<Self>;
+    /// The move on the axes with these letters, without those that the machine has not; else why that
+    /// cannot be.
+    fn on_axes(next: &AxisMove, letters: &[char]) -> Result<Self, String>;
+}
+
+/// Runs a function that is generic over the number of axes.
+macro_rules! by_axes {
+    ($count:expr, $run:ident($($argument:expr),*)) => {
+        match $count {
+            2 => $run::<2>($($argument),*),
+            3 => $run::<3>($($argument),*),
+            4 => $run::<4>($($argument),*),
+            5 => $run::<5>($($argument),*),
+            _ => $run::<6>($($argument),*),
+        }
+    };
+}
+
+pub(crate) use by_axes;
+
+/// Moves that take other axes along.
+macro_rules! takes_others_along {
+    ($($count:literal),*) => {
+        $(impl OnAxes for Move<$count> {
+            fn on_axes(next: &AxisMove, letters: &[char]) -> Result<Self, String> {
+                beside(next, letters)
+            }
+        })*
+    };
+}
+
+takes_others_along!(4, 5, 6);
+
+/// The move on axes of which some stand beside X, Y and Z.
+fn beside<const N: usize>(next: &AxisMove, letters: &[char]) -> Result<Move<N>, String> {
+    let letters = letters.try_into().map_err(|_| NEEDS_ANOTHER.to_owned())?;
+    next.on_axes(letters).map_err(|reason| match reason {
+        ToolpathError::ArcPlane { .. } => NEEDS_ANOTHER.to_owned(),
+        other => other.to_string(),
+    })
 }
 
 impl OnAxes for Move<3> {
-    fn on_axes(next: &Move<3>) -> Option<Self> {
-        Some(*next)
+    fn on_axes(next: &AxisMove, letters: &[char]) -> Result<Self, String> {
+        if letters == ['X', 'Y', 'Z'] {
+            Ok(*next.step())
+        } else {
+            beside(next, letters)
+        }
     }
 }
 
 impl OnAxes for Move<2> {
-    fn on_axes(next: &Move<3>) -> Option<Self> {
-        let flat = |point: Vector<3>| Vector::<2>::new(point.x, point.y);
-        let mut same = match next.path() {
-            Path::Line { end } => {
-                Move::line_to(flat(*end), next.feedrate(), next.tolerance()).ok()?
-            }
-            Path::Dwell { duration } => Move::dwell(*duration, next.tolerance()).ok()?,
-            Path::Arc(arc) => {
-                let about = |turns| {
-                    Arc::about(
-                        flat(arc.start()),
-                        flat(arc.end()),
-                        flat(arc.center()),
-                        [0, 1],
-                        arc.sweep() > 0.0,
-                        turns,
-                    )
-                    .ok()
-                };
-                let (radial, lateral) = arc.frame();
-                if radial.z.abs().max(lateral.z.abs()) > 0.0 {
-                    return None;
-                }
-                let once = about(0)?;
-                let more = ((arc.sweep() - once.sweep()) / std::f64::consts::TAU)
-                    .abs()
-                    .round();
-                Move::arc(about(whole(more))?, next.feedrate(), next.tolerance())
-            }
-            _ => return None,
-        };
-        if next.stops() {
-            same = same.with_exact_stop();
-        }
-        Some(same.from_line(next.line()))
+    fn on_axes(next: &AxisMove, _letters: &[char]) -> Result<Self, String> {
+        on_plane(next.step()).ok_or_else(|| NEEDS_ANOTHER.to_owned())
     }
+}
+
+/// The move on X and Y; `None` for an arc that needs Z.
+fn on_plane(next: &Move<3>) -> Option<Move<2>> {
+    let flat = |point: Vector<3>| Vector::<2>::new(point.x, point.y);
+    let mut same = match next.path() {
+        Path::Line { end } => Move::line_to(flat(*end), next.feedrate(), next.tolerance()).ok()?,
+        Path::Dwell { duration } => Move::dwell(*duration, next.tolerance()).ok()?,
+        Path::Arc(arc) => {
+            let about = |turns| {
+                Arc::about(
+                    flat(arc.start()),
+                    flat(arc.end()),
+                    flat(arc.center()),
+                    [0, 1],
+                    arc.sweep() > 0.0,
+                    turns,
+                )
+                .ok()
+            };
+            let (radial, lateral) = arc.frame();
+            if radial.z.abs().max(lateral.z.abs()) > 0.0 {
+                return None;
+            }
+            let once = about(0)?;
+            let more = ((arc.sweep() - once.sweep()) / std::f64::consts::TAU)
+                .abs()
+                .round();
+            Move::arc(about(whole(more))?, next.feedrate(), next.tolerance())
+        }
+        _ => return None,
+    };
+    if next.stops() {
+        same = same.with_exact_stop();
+    }
+    Some(same.from_line(next.line()))
 }
 
 #[allow(
@@ -167,7 +216,7 @@ mod tests {
     #[test]
     fn an_arc_that_bulges_over_the_end_of_an_axis_is_refused() {
         for turns in 0..3 {
-            let flat = Move::<2>::on_axes(&half_circle(turns)).unwrap();
+            let flat = on_plane(&half_circle(turns)).unwrap();
             let refused = travel().check(&flat, "a.ngc");
             assert!(
                 refused.is_ok() == (turns == 0),
@@ -192,7 +241,7 @@ mod tests {
     #[test]
     fn an_arc_keeps_its_turns_on_two_axes() {
         let arc = half_circle(2);
-        let flat = Move::<2>::on_axes(&arc).unwrap();
+        let flat = on_plane(&arc).unwrap();
         let (Path::Arc(three), Path::Arc(two)) = (arc.path(), flat.path()) else {
             panic!("both are arcs");
         };

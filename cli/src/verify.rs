@@ -14,7 +14,7 @@ use crate::shown::show;
 use crate::source::{Source, open_file};
 use crate::summary::Summary;
 use crate::table::Table;
-use crate::travel::OnAxes;
+use crate::travel::{OnAxes, by_axes};
 use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
@@ -40,10 +40,7 @@ pub(crate) fn verify(
         return crate::poses::verify(args, out, err);
     }
     let setup = Setup::new(&args.job, None)?;
-    match setup.axes.len() {
-        2 => run::<2>(args, &setup, out, err),
-        _ => run::<3>(args, &setup, out, err),
-    }
+    by_axes!(setup.axes.len(), run(args, &setup, out, err))
 }
 
 fn run<const N: usize>(
@@ -92,8 +89,8 @@ where
     }
     follower.read_rest()?;
     let verdict = follower.judge.finish();
-    warn(&follower.moves.program, err);
-    let blocks = follower.moves.program.blocks();
+    warn(follower.moves.program.program(), err);
+    let blocks = follower.moves.program.program().blocks();
     let mut summary = Summary::of(&name, setup, &verdict, blocks, rows);
     summary.set_points = Some(file.display().to_string());
     show(&summary, args.job.json, out, err)

@@ -11,11 +11,11 @@ use toolglide_kinematics::numeric::LENGTH_SLACK;
 use toolglide_kinematics::{AxisKind, KinematicsError, MachineKinematics, ToolPose, Vector};
 
 /// Largest velocity of an axis of the preset, mm/s.
-const VELOCITY: f64 = 500.0;
+pub(crate) const VELOCITY: f64 = 500.0;
 /// Largest acceleration of an axis of the preset, mm/s².
-const ACCELERATION: f64 = 2_500.0;
+pub(crate) const ACCELERATION: f64 = 2_500.0;
 /// Largest jerk of an axis of the preset, mm/s³.
-const JERK: f64 = 200_000.0;
+pub(crate) const JERK: f64 = 200_000.0;
 
 /// Two or three straight axes.
 #[derive(Clone, Copy, Debug)]

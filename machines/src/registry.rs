@@ -112,8 +112,14 @@ mod tests {
                 "corexy",
                 "delta",
                 "gantry",
+                "gantry-a",
+                "gantry-abc",
+                "gantry-b",
+                "gantry-c",
+                "gantry-uvw",
                 "head-bc",
                 "head-table-bc",
+                "hot-wire",
                 "scara",
                 "table-ac",
                 "table-bc"
@@ -127,7 +133,7 @@ mod tests {
         let refused = find("lathe").unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "machine \"lathe\" is not registered; registered: arm-6r, corexy, delta, gantry, head-bc, head-table-bc, scara, table-ac, table-bc"
+            "machine \"lathe\" is not registered; registered: arm-6r, corexy, delta, gantry, gantry-a, gantry-abc, gantry-b, gantry-c, gantry-uvw, head-bc, head-table-bc, hot-wire, scara, table-ac, table-bc"
         );
     }
 

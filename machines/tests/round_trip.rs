@@ -31,9 +31,10 @@ fn awkward(config: &MachineConfig, chance: &mut Chance) -> MachineConfig {
         let value = value.unwrap_or(usual) + chance.between(-40.0, 40.0);
         config.geometry.insert(distance.name.to_owned(), value);
     }
+    let own = config.model == "gantry" || toolglide_machines::is_plain(&config);
     for axis in &mut config.axis {
         axis.travel = None;
-        if config.model != "gantry" {
+        if !own {
             axis.reversed = chance.share() < 0.5;
             axis.zero = chance.between(-90.0, 90.0);
         }
@@ -143,6 +144,7 @@ fn every_branch_of_every_machine_gives_the_pose_it_was_asked_for() {
         let branches = match model.name {
             "arm-6r" => 8,
             "gantry" | "corexy" | "delta" => 1,
+            _ if toolglide_machines::is_plain(&config) => 1,
             _ => 2,
         };
         assert_eq!(most, branches, "{}: branches", model.name);

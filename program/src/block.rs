@@ -2,6 +2,7 @@
 //!
 //! Source: the modal groups of RS274/NGC. Not here: the modal state, and which words a code needs.
 
+use crate::axis_moves::AXES_BESIDE;
 use crate::code::Code;
 use crate::codes::{
     Distance, FeedMode, Group, Motion, Once, PathControl, Plane, Saving, Side, Stop, Subprogram,
@@ -76,6 +77,8 @@ pub(crate) struct Block {
     pub(crate) rotary: bool,
     /// Whether it has secondary axes U, V and W.
     pub(crate) secondary: bool,
+    /// Axes A, B, C, U, V and W that it has beside X, Y and Z, with no tool pose behind them.
+    pub(crate) beside: [bool; 6],
     /// Its name; empty where nobody gave one.
     pub(crate) machine: Arc<str>,
     /// Whether a word said that an axis which is not there is at 0, and of which that was told.
@@ -124,6 +127,7 @@ impl Block {
             assignments: Vec::new(),
             rotary: false,
             secondary: false,
+            beside: [false; 6],
             machine: Arc::from(""),
             absent: false,
             absent_noted: 0,
@@ -319,6 +323,14 @@ impl Block {
         (self.taken & 1 << group as u32 != 0).then(|| self.takers[group as usize])
     }
 
+    /// Whether the machine has this axis beside X, Y and Z.
+    pub(crate) fn has_beside(&self, letter: u8) -> bool {
+        let index = AXES_BESIDE
+            .iter()
+            .position(|axis| *axis == char::from(letter));
+        index.is_some_and(|index| self.beside[index])
+    }
+
     /// A refusal of an axis that the machine has not.
     pub(crate) fn no_axis(&self, letter: char) -> Reason {
         let machine = Arc::clone(&self.machine);
@@ -342,8 +354,8 @@ impl Block {
         }
         let moves = match word.letter {
             b'X'..=b'Z' => settings.axes[usize::from(word.letter - b'X')],
-            b'A'..=b'C' => self.rotary,
-            b'U'..=b'W' => self.secondary,
+            b'A'..=b'C' => self.rotary || self.has_beside(word.letter),
+            b'U'..=b'W' => self.secondary || self.has_beside(word.letter),
             _ => true,
         };
         if !moves && word.value.abs() <= 0.0 {

@@ -57,6 +57,7 @@ mod aftermath;
 mod arcs;
 mod arithmetic_error;
 mod asides;
+mod axis_moves;
 mod axis_words;
 mod bezier;
 mod block;
@@ -137,6 +138,7 @@ mod units;
 mod uses;
 
 pub use arithmetic_error::ArithmeticError;
+pub use axis_moves::{AXES_BESIDE, AxisMove, AxisMoves};
 pub use code::Code;
 pub use error::{Notice, ProgramError, Warning};
 pub use flow_error::FlowError;

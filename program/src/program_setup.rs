@@ -3,6 +3,7 @@
 //! Not here: reading.
 
 use crate::arithmetic_error::ArithmeticError;
+use crate::axis_moves::AxisMoves;
 use crate::codes::Motion;
 use crate::fanuc::Fanuc;
 use crate::language::Language;
@@ -47,6 +48,15 @@ impl<R: BufRead> Program<R> {
     pub fn with_secondary_axes(mut self) -> Self {
         self.block.secondary = true;
         self
+    }
+
+    /// The same program, as the moves of all axes of a machine that has `axes` beside X, Y and Z, in the order
+    /// of [`AXES_BESIDE`](crate::AXES_BESIDE); they begin at `start`, degrees and mm.
+    #[must_use]
+    pub fn on_all_axes(mut self, axes: [bool; 6], start: [f64; 6]) -> AxisMoves<R> {
+        self.lowering.others.at = start;
+        self.block.beside = axes;
+        AxisMoves::new(self)
     }
 
     /// The same program, for a machine of this name: refusals of axes that it has not name it.

@@ -152,6 +152,7 @@ impl Line<'_> {
             b'G' => self.code(value, span),
             // Lengths of tools are in the machine.
             b'D' | b'H' => Ok(()),
+            b'U' | b'V' | b'W' if self.block.has_beside(letter) => self.add(letter, value, span),
             b'L' | b'P' | b'Q' | b'E' | b'O' | b'U' | b'V' | b'W' => Err(unknown(name, span)),
             b'F' if self.dwell => self.add(b'P', value, span),
             b'M' if (value - 17.0).abs() < 0.5 => self.add(b'M', 2.0, span),

@@ -10,6 +10,7 @@ use crate::source::{Source, language, poses_with_parameters, subroutines};
 use crate::values::PerAxis;
 use std::collections::VecDeque;
 use std::io::BufRead;
+use toolglide_machines::is_plain;
 
 use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{FiveAxisError, Resolver, start_of};
@@ -33,7 +34,8 @@ const MOVES_AHEAD: usize = 1 << 14;
 pub(crate) fn concerns(job: &JobArgs) -> Result<bool, CliError> {
     let (config, machine) = machine(&job.machine)?;
     let language = language(&job.program, job.dialect.as_deref())?;
-    Ok(!is_straight(&config, machine.as_ref()) || language == Language::CutterLocations)
+    let by_axes = is_straight(&config, machine.as_ref()) || is_plain(&config);
+    Ok(!by_axes || language == Language::CutterLocations)
 }
 
 /// Machine and limits of a run.

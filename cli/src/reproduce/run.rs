@@ -91,7 +91,9 @@ impl Runs {
             Settings::new(Tolerance::new(TOLERANCE).map_err(|reason| refuse(reason.to_string()))?);
         settings.axes = [true, true, false];
         let mut moves = Moves::<_, 2> {
-            program: Program::new(text.as_bytes(), name, settings),
+            program: Program::new(text.as_bytes(), name, settings)
+                .on_all_axes([false; 6], [0.0; 6]),
+            letters: ['X', 'Y'],
             name: name.to_owned(),
             travel: Travel::of(&[]),
         };
