@@ -109,7 +109,11 @@ impl<const N: usize> Ways<N> {
         // Corners that were merged must be passed in their turn, too.
         let corners = vertices.windows(2).map(|pair| {
             let tolerance = pair[0].tolerance.min(pair[1].tolerance);
-            (pair[0].point, ORDER_SHARE * tolerance.length())
+            (
+                pair[0].point,
+                ORDER_SHARE * tolerance.length(),
+                pair[0].serves.last,
+            )
         });
         let superposed = (coarse.is_some() || fine.is_some()) && stretches.whole_passes(corners);
         if superposed {

@@ -182,7 +182,7 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Whether that comes as near to points as is said, one after the other.
-    pub(crate) fn whole_passes(&self, points: impl Iterator<Item = (Vector<N>, f64)>) -> bool {
+    pub(crate) fn whole_passes(&self, points: impl Iterator<Item = (Vector<N>, f64, u32)>) -> bool {
         self.superposer.passes(points)
     }
 

@@ -87,7 +87,7 @@ impl<const N: usize> Superposer<N> {
     }
 
     /// Whether what was planned last comes as near to points as is said, one after the other.
-    pub(crate) fn passes(&self, points: impl Iterator<Item = (Vector<N>, f64)>) -> bool {
+    pub(crate) fn passes(&self, points: impl Iterator<Item = (Vector<N>, f64, u32)>) -> bool {
         self.best.passes(points)
     }
 

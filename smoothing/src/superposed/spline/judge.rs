@@ -170,25 +170,29 @@ impl<const N: usize> Spline<N> {
     pub(in crate::superposed) fn passes_in_order(&self, curve: &Curve<N>) -> bool {
         let last = curve.legs().len().saturating_sub(1);
         let corners = curve.legs()[..last].iter();
-        self.passes(corners.map(|leg| (leg.end, leg.room().length())))
+        self.passes(corners.map(|leg| (leg.end, leg.room().length(), u32::MAX)))
     }
 
-    /// Whether the motion comes as near to points as is said, one after the other.
+    /// Whether the motion comes as near to points as is said, one after the other, while it serves their moves.
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
     pub(in crate::superposed) fn passes(
         &self,
-        points: impl Iterator<Item = (Vector<N>, f64)>,
+        points: impl Iterator<Item = (Vector<N>, f64, u32)>,
     ) -> bool {
         let cuts = PARTS[1];
         let mut corners = points.peekable();
         for piece in 0..self.pieces() {
+            let serves = self.four(piece)[0].serves.first;
+            if corners.peek().is_some_and(|(_, _, step)| *step < serves) {
+                return false;
+            }
             let [a, b, c, d] = self.four(piece).map(|control| control.point);
             let second = (c - b * 2.0 + a).norm().max((d - c * 2.0 + b).norm());
             let sagitta = second / (8.0 * (cuts * cuts) as f64);
             let mut from = (a + b * 4.0 + c) / 6.0;
             for cut in 1..=cuts {
                 let to = at(&[a, b, c, d], cut as f64 / cuts as f64);
-                while let Some((point, room)) = corners.peek()
+                while let Some((point, room, _)) = corners.peek()
                     && distance_to(point, &from, &to) + sagitta <= *room
                 {
                     corners.next();
