@@ -37,7 +37,12 @@ fn a_limit_just_below_the_peak_of_an_axis_is_exceeded() {
     for (index, peaks) in report.axes.iter().enumerate() {
         let below = |value: f64| 0.99 * value;
         for quantity in ["velocity", "acceleration", "jerk"] {
-            let (mut velocity, mut acceleration, mut jerk) = (1e9, 1e12, 1e15);
+            let wide = |peak: f64| 10.0 * peak;
+            let (mut velocity, mut acceleration, mut jerk) = (
+                wide(peaks.velocity.value),
+                wide(peaks.acceleration.value),
+                wide(peaks.jerk.value),
+            );
             match quantity {
                 "velocity" => velocity = below(peaks.velocity.value),
                 "acceleration" => acceleration = below(peaks.acceleration.value),

@@ -17,6 +17,10 @@ use toolglide_kinematics::numeric::SEARCH_PRECISION;
 /// A backward pass waits until of the nodes that it looks at at most so many times as many are old as are new.
 const PASSES: usize = 2;
 
+/// Fewest new nodes that a pass waits for: a corner that is fixed before the next one is known leaves it too little of the
+/// move between them.
+const FEWEST_FRESH: usize = 2;
+
 /// A straight move as the window sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Link {
@@ -173,7 +177,7 @@ impl Window {
         }
         let fresh = known - self.passed;
         // A pass costs as much as it looks at, so it waits until a share of that is new.
-        let patience = (self.passed / PASSES).clamp(1, self.batch);
+        let patience = (self.passed / PASSES).clamp(FEWEST_FRESH, self.batch.max(FEWEST_FRESH));
         let divided = self.ends_cruising();
         if fresh > 0 && (self.finished || divided || self.due > 0 || fresh >= patience) {
             self.backward();
