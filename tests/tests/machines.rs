@@ -23,7 +23,7 @@ const AROUND: [[f64; 5]; 9] = [
     [-30.0, -20.0, 0.0, 0.0, -0.2],
 ];
 
-/// The path, turned upright where the machine cannot tilt, at a place that the machine reaches.
+/// The path, turned upright where the machine cannot tilt and level where it cannot rise, at a place that the machine reaches.
 fn poses(machine: &dyn MachineKinematics, place: Vector<3>) -> Vec<ToolPose> {
     let near = AxisVector::zeros(machine.axes().len());
     let tilts = {
@@ -31,11 +31,18 @@ fn poses(machine: &dyn MachineKinematics, place: Vector<3>) -> Vec<ToolPose> {
         let pose = ToolPose::new(place, leaning).unwrap();
         machine.inverse(&pose, &near).is_ok()
     };
+    let rises = {
+        let above = place + Vector::<3>::new(0.0, 0.0, 8.0);
+        machine
+            .inverse(&ToolPose::upright(above).unwrap(), &near)
+            .is_ok()
+    };
     AROUND
         .iter()
         .map(|&[x, y, z, i, j]| {
             let lean = if tilts { [i, j] } else { [0.0; 2] };
             let orientation = Vector::<3>::new(lean[0], lean[1], 1.0).normalize();
+            let z = if rises { z } else { 0.0 };
             ToolPose::new(place + Vector::<3>::new(x, y, z), orientation).unwrap()
         })
         .collect()
@@ -45,6 +52,7 @@ fn poses(machine: &dyn MachineKinematics, place: Vector<3>) -> Vec<ToolPose> {
 fn place(model: &str) -> Vector<3> {
     match model {
         "delta" => Vector::<3>::new(0.0, 0.0, 50.0),
+        "hot-wire" => Vector::<3>::new(5.0, -8.0, 0.0),
         _ => Vector::<3>::new(5.0, -8.0, 20.0),
     }
 }
