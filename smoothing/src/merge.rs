@@ -12,8 +12,11 @@
 //! larger for the straight line than for both moves added. Not here: motion.
 
 use crate::leg::Leg;
-use toolglide_kinematics::numeric::{LENGTH_SLACK, SHORTEST_LENGTH};
+use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{Limits, Pause, Serves, Tolerance, Vector};
+
+/// Share of the tolerance within which merged moves count as straight: rounding of their ends.
+pub(crate) const STRAIGHT_SHARE: f64 = 1e-6;
 
 /// Share of the tolerance that merging and chords may use. On a curve of radius `R`, chords of length
 /// `c` lie `c^2 / 8R` off and corners that fill the chords cut `c^2 / 12R`: three parts to two.
@@ -402,7 +405,7 @@ impl<const N: usize> Merger<N> {
             }
         }
         let deviation = furthest.sqrt() + bounds.bulge;
-        let straight = deviation <= LENGTH_SLACK;
+        let straight = deviation <= STRAIGHT_SHARE * budget;
         (!(straight && self.is_long(&run.0, run.1))).then_some(deviation)
     }
 }

@@ -17,14 +17,15 @@ use ways::Ways;
 /// Most vertices, and most legs, of a section that is held back; no more vertices than the window has corners.
 const MOST_HELD: usize = 1024;
 
-/// Most time that the legs of a section that is held back take at their feedrates, s.
-const MOST_TIME: f64 = 3.0;
+/// Most stops that the legs of a section that is held back have room for: some 2 s of motion on a mill. Counted in stops,
+/// so that a path of other lengths and times is planned in the same way.
+const MOST_STOPS: f64 = 80.0;
 
 /// Most pieces of a section that is held back.
 const MOST_PIECES: usize = 8192;
 
 /// Most legs on which the motion can reach its feedrate and stop again, of a section that is held back though these
-/// take more than such a share of its time: what is before them hardly depends on what follows.
+/// take more than such a share of its stops: what is before them hardly depends on what follows.
 const MOST_LONG: usize = 1;
 const LONG_SHARE: f64 = 0.5;
 
@@ -43,9 +44,9 @@ pub(crate) struct Sections<const N: usize> {
     vertices: Vec<Vertex<N>>,
     within_arc: bool,
     long: usize,
-    /// Time that these take at their feedrates, and that all legs take.
-    long_time: f64,
-    time: f64,
+    /// Stops that these have room for, and that all legs have.
+    long_stops: f64,
+    stops: f64,
     window: usize,
     ways: Ways<N>,
     /// Motion: the first `ready` pieces are to be handed out, those of the section behind them may still become
@@ -75,8 +76,8 @@ impl<const N: usize> Sections<N> {
             vertices: Vec::with_capacity(MOST_HELD + 2),
             within_arc: false,
             long: 0,
-            long_time: 0.0,
-            time: 0.0,
+            long_stops: 0.0,
+            stops: 0.0,
             window: settings.window.min(MOST_HELD),
             ways: Ways::new(start, settings),
             held: VecDeque::with_capacity(2 * MOST_PIECES),
@@ -177,8 +178,8 @@ impl<const N: usize> Sections<N> {
         self.vertices.clear();
         self.within_arc = false;
         self.long = 0;
-        self.long_time = 0.0;
-        self.time = 0.0;
+        self.long_stops = 0.0;
+        self.stops = 0.0;
     }
 
     /// Ends the leg under way.
@@ -192,11 +193,11 @@ impl<const N: usize> Sections<N> {
     }
 
     fn take(&mut self, leg: Leg<N>) {
-        let time = leg.length / leg.limits.velocity;
-        self.time += time;
-        if stops_within(&leg) > LONG {
+        let stops = stops_within(&leg);
+        self.stops += stops;
+        if stops > LONG {
             self.long += 1;
-            self.long_time += time;
+            self.long_stops += stops;
         }
         self.legs.push(leg);
     }
@@ -211,9 +212,9 @@ impl<const N: usize> Sections<N> {
         }
         let long = self.legs.len() >= MOST_HELD
             || self.vertices.len() >= self.window
-            || self.time > MOST_TIME
+            || self.stops > MOST_STOPS
             || self.held.len() >= most
-            || (self.long > MOST_LONG && self.long_time > LONG_SHARE * self.time);
+            || (self.long > MOST_LONG && self.long_stops > LONG_SHARE * self.stops);
         if long {
             self.ready = self.held.len();
             self.state = State::Streaming;

@@ -9,8 +9,7 @@ use super::choose::{FEWEST_LEGS, Material};
 use super::travel::way_in;
 use crate::corners::room_beside;
 use crate::leg::Leg;
-use crate::merge::{Vertex, vertex_of};
-use toolglide_kinematics::numeric::LENGTH_SLACK;
+use crate::merge::{STRAIGHT_SHARE, Vertex, vertex_of};
 
 impl<const N: usize> Stretches<N> {
     /// Divides the plan on a leg where it is long enough, and the few legs before it are turned corner by corner for
@@ -19,7 +18,7 @@ impl<const N: usize> Stretches<N> {
         let certain = self.planned == 0
             && !self.watched
             && self.legs.len() + 1 < FEWEST_LEGS
-            && leg.deviation <= LENGTH_SLACK
+            && leg.deviation <= STRAIGHT_SHARE * leg.tolerance.length()
             && !(self.has_arc(&[leg]) || self.has_arc(&self.legs));
         if !certain {
             return leg;
