@@ -7,33 +7,23 @@
 
 mod bezier;
 mod chords;
-mod corners;
-mod interrupted;
-mod lattice;
-mod leg;
-mod merge;
+mod corner;
+mod lookahead;
 mod method;
-mod overlap;
-mod pieces;
 mod planner;
-mod scale;
 mod section;
-mod select;
-mod stop_start;
+mod segment;
+mod segment_merger;
+mod short_segments;
 mod stretch;
-mod superposed;
-mod turn;
-mod two_jerks;
-mod uninterrupted;
-mod window;
 
 pub use bezier::{BezierSmoothing, plan_bezier};
-pub use interrupted::Interrupted;
+pub use corner::interrupted::Interrupted;
+pub use corner::shape::{Form, Part, Turn, TurnShape};
+pub use corner::stop_start::StopStart;
+pub use corner::uninterrupted::Uninterrupted;
 pub use method::{Method, Settings};
 pub use planner::{KinematicSmoothing, plan};
-pub use stop_start::StopStart;
-pub use turn::{Form, Part, Turn, TurnShape};
-pub use uninterrupted::Uninterrupted;
 
 /// Turns of a unit direction smaller than this are taken for straight: the velocity then jumps by
 /// less than a billionth of the feedrate, which no drive resolves.

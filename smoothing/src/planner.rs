@@ -4,10 +4,10 @@
 //! superposed corners, everything else corner by corner. Not here: any formula.
 
 use crate::chords::Chords;
-use crate::corners::Corners;
-use crate::merge::Vertex;
+use crate::lookahead::corners::Corners;
 use crate::method::{Method, Settings};
 use crate::section::Sections;
+use crate::segment_merger::Vertex;
 use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
     Arc, Intake, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath, Vector,
@@ -133,7 +133,10 @@ impl<const N: usize> Route<N> {
     /// An arc begins, and may be taken with what is beside it.
     fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, index: u32) {
         let tolerance = step.tolerance();
-        let mut chords = Chords::new(*arc, crate::merge::MERGE_SHARE * tolerance.length());
+        let mut chords = Chords::new(
+            *arc,
+            crate::segment_merger::MERGE_SHARE * tolerance.length(),
+        );
         let bulge = chords.bulge();
         let points = std::iter::from_fn(|| chords.next());
         let vertices = points.map(|point| vertex_of(step, index, point, bulge));
@@ -180,7 +183,7 @@ impl<const N: usize> Route<N> {
     /// The chords of an arc.
     fn chords_of(&self, arc: &Arc<N>, tolerance: f64) -> Chords<N> {
         match self {
-            Self::Corners(_) => Chords::new(*arc, crate::merge::MERGE_SHARE * tolerance),
+            Self::Corners(_) => Chords::new(*arc, crate::segment_merger::MERGE_SHARE * tolerance),
             _ => Chords::fine(*arc, crate::stretch::FINE_SHARE * tolerance),
         }
     }

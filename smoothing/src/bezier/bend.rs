@@ -8,7 +8,7 @@
 
 use super::quintic::{Offset, PARTS, Quintic};
 use crate::STRAIGHT;
-use crate::turn::{Form, TurnShape};
+use crate::corner::shape::{Form, TurnShape};
 use toolglide_kinematics::{
     Corner, Limits, Piece, Sample, Serves, Tangential, Vector, largest_multiple,
 };

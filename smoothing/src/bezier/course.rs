@@ -5,11 +5,11 @@
 //! stop always fits is its promise. Not here: the corners themselves.
 
 use super::bend::{Bend, PIECES};
-use crate::leg::Leg;
-use crate::merge::{Merger, ROUNDING_SHARE, Vertex};
-use crate::pieces::{MOST_PIECES, corner_between, unroll_leg};
-use crate::turn::TurnShape;
-use crate::window::{Link, Window};
+use crate::corner::shape::TurnShape;
+use crate::lookahead::unroll::{MOST_PIECES, corner_between, unroll_leg};
+use crate::lookahead::window::{Link, Window};
+use crate::segment::Leg;
+use crate::segment_merger::{Merger, ROUNDING_SHARE, Vertex};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Serves, Vector};
 

@@ -10,7 +10,7 @@ mod course;
 mod quintic;
 
 use crate::chords::Chords;
-use crate::merge::{MERGE_SHARE, Vertex};
+use crate::segment_merger::{MERGE_SHARE, Vertex};
 use course::Course;
 use toolglide_kinematics::{
     Intake, Limits, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath,

@@ -5,9 +5,9 @@
 
 mod ways;
 
-use crate::leg::Leg;
-use crate::merge::{Merger, Vertex};
 use crate::method::Settings;
+use crate::segment::Leg;
+use crate::segment_merger::{Merger, Vertex};
 use crate::stretch::{FINE_SHARE, Stretches, stops_within};
 use std::collections::VecDeque;
 use toolglide_kinematics::numeric::TIME_SLACK;

@@ -4,12 +4,12 @@
 //! merged with more of the tolerance. How much is tried depends on how many vertices came since, so that the work
 //! for a vertex has a bound on average, and so has that for a section. Not here: when a section ends.
 
-use crate::corners::Corners;
-use crate::leg::Leg;
-use crate::merge::{Merger, Vertex, vertex_of};
+use crate::lookahead::corners::Corners;
 use crate::method::{Method, Settings};
+use crate::segment::Leg;
+use crate::segment_merger::{Merger, Vertex, vertex_of};
+use crate::short_segments::Effort;
 use crate::stretch::Stretches;
-use crate::superposed::Effort;
 use toolglide_kinematics::{Piece, Vector};
 
 /// Kinds of corners that are tried throughout, each for sections of so many vertices at the most: those that

@@ -6,9 +6,9 @@
 
 use super::Stretches;
 use super::travel::Entry;
-use crate::corners::Corners;
-use crate::leg::Leg;
-use crate::merge::vertex_of;
+use crate::lookahead::corners::Corners;
+use crate::segment::Leg;
+use crate::segment_merger::vertex_of;
 
 /// Fewest legs of a stretch worth trying with superposed corners.
 pub(super) const FEWEST_LEGS: usize = 4;

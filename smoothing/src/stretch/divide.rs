@@ -7,9 +7,9 @@
 use super::Stretches;
 use super::choose::{FEWEST_LEGS, Material};
 use super::travel::way_in;
-use crate::corners::room_beside;
-use crate::leg::Leg;
-use crate::merge::{STRAIGHT_SHARE, Vertex, vertex_of};
+use crate::lookahead::corners::room_beside;
+use crate::segment::Leg;
+use crate::segment_merger::{STRAIGHT_SHARE, Vertex, vertex_of};
 
 impl<const N: usize> Stretches<N> {
     /// Divides the plan on a leg where it is long enough, and the few legs before it are turned corner by corner for

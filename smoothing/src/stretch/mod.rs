@@ -8,12 +8,13 @@ mod choose;
 mod divide;
 mod travel;
 mod vertices;
-use crate::corners::Corners;
 
-use crate::leg::Leg;
-use crate::merge::{MOST_MERGED, Merger, Vertex};
+use crate::lookahead::corners::Corners;
+
 use crate::method::Settings;
-use crate::superposed::{Effort, Superposer};
+use crate::segment::Leg;
+use crate::segment_merger::{MOST_MERGED, Merger, Vertex};
+use crate::short_segments::{Effort, Superposer};
 use choose::Ideal;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};

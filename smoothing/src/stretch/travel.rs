@@ -7,7 +7,7 @@
 
 use super::choose::{Choice, Material};
 use super::{Cause, Event, MOST_LEGS, SHARP, Stretches};
-use crate::leg::Leg;
+use crate::segment::Leg;
 use toolglide_kinematics::Tangential;
 use toolglide_kinematics::numeric::LENGTH_SLACK;
 use toolglide_profiles::Rise;

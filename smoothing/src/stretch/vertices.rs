@@ -4,8 +4,8 @@
 //! best what has not been merged before. For the same reason their arcs have fewer chords. Not here:
 //! either merging.
 
-use crate::leg::Leg;
-use crate::merge::Vertex;
+use crate::segment::Leg;
+use crate::segment_merger::Vertex;
 use std::collections::VecDeque;
 use std::collections::vec_deque::Iter;
 use std::iter::Copied;

@@ -1,0 +1,105 @@
+//! A leg and the corner at its end, unrolled into pieces.
+//!
+//! Source: sections 3.2 and 3.3. Each leg and each corner is anchored at programmed points, so that
+//! rounding does not add up along the path. Not here: the choice of the corner.
+
+use crate::corner::shape::{Part, Turn, TurnShape};
+use crate::segment::Leg;
+use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance};
+use toolglide_profiles::{Connection, Feed, ProfileError};
+
+/// Most pieces of a leg, its corner and a pause.
+pub(crate) const MOST_PIECES: usize = 16;
+
+fn feed_on<const N: usize>(
+    leg: &Leg<N>,
+    from: &TurnShape,
+    to: &TurnShape,
+) -> Result<Feed, ProfileError> {
+    let connection = Connection {
+        from: [from.exit.speed, from.exit.acceleration],
+        to: [to.entry.speed, to.entry.acceleration],
+        limits: leg.limits,
+    };
+    let length = leg.length - from.exit.distance - to.entry.distance;
+    Feed::over(length.max(0.0), &connection)
+}
+
+/// Unrolls the leg between two corner motions.
+pub(crate) fn unroll_leg<const N: usize>(
+    leg: &Leg<N>,
+    from: &TurnShape,
+    to: &TurnShape,
+    mut take: impl FnMut(Piece<N>),
+) {
+    let (reach, left) = (from.exit.distance, to.entry.distance);
+    let feed = match feed_on(leg, from, to) {
+        Ok(feed) => feed,
+        Err(error) => {
+            debug_assert!(false, "the window promised that this fits: {error}");
+            return;
+        }
+    };
+    let Some(last) = feed.phases().iter().rposition(|phase| phase.duration > 0.0) else {
+        return;
+    };
+    let end = if left > 0.0 {
+        leg.end - leg.direction * left
+    } else {
+        leg.end
+    };
+    let at = |position: f64| {
+        if position > 0.0 {
+            leg.start + leg.direction * position
+        } else {
+            leg.start
+        }
+    };
+    for (index, phase) in feed.phases().iter().enumerate() {
+        if phase.duration <= 0.0 {
+            continue;
+        }
+        let state = feed.starts()[index];
+        let start = Sample {
+            position: at(reach + state.position),
+            velocity: leg.direction * state.velocity,
+            acceleration: leg.direction * state.acceleration,
+            jerk: leg.direction * state.jerk,
+        };
+        let reached = reach + state.after(phase.duration).position;
+        let piece_end = if index == last { end } else { at(reached) };
+        take(Piece::new(&start, phase.duration, piece_end, leg.serves));
+    }
+}
+
+/// The corner between two legs.
+pub(crate) fn corner_between<const N: usize>(
+    leg: &Leg<N>,
+    next: &Leg<N>,
+    tolerance: Tolerance,
+) -> Corner<N> {
+    Corner {
+        point: leg.end,
+        incoming: leg.direction,
+        outgoing: next.direction,
+        speed_in: leg.limits.velocity,
+        speed_out: next.limits.velocity,
+        tolerance,
+    }
+}
+
+/// Unrolls a part of the corner motion between two legs.
+pub(crate) fn unroll_corner<const N: usize>(
+    shape: &TurnShape,
+    part: Part,
+    corner: Corner<N>,
+    leg: &Leg<N>,
+    next: &Leg<N>,
+    take: impl FnMut(Piece<N>),
+) {
+    let serves = Serves {
+        first: leg.serves.first,
+        last: next.serves.last,
+    };
+    Turn::new(*shape, corner).pieces(part, serves, take);
+}

@@ -1,0 +1,134 @@
+//! One plan of a stretch after another, each slower where the one before exceeded something.
+//!
+//! Source: ours. A plan counts only when every piece of it has been found inside all limits and the tolerance.
+//! Not here: what a plan is needed for.
+
+use crate::short_segments::feed_profile::{Filter, Handover};
+use crate::short_segments::{MOST_STEPS, Onward, Superposer};
+
+/// Fewest time steps of one stretch.
+const FEWEST_STEPS: f64 = 4.0;
+
+/// Share of the feedrate by which a change of speed overshoots it, for a time step as long as the ramp.
+const OVERSHOOT: f64 = 0.015;
+
+/// Rounds of slowing down where a limit or the tolerance is exceeded.
+const ROUNDS: usize = 16;
+
+impl<const N: usize> Superposer<N> {
+    pub(super) fn attempt(
+        &mut self,
+        filter: &Filter,
+        ramp: f64,
+        most: f64,
+        onward: Option<&Onward<N>>,
+    ) -> bool {
+        // A change of speed overshoots by about this much when the control points are sharpened.
+        let share = 1.0 - OVERSHOOT * (filter.step / ramp).powi(2);
+        let start = onward.map_or(Handover::AT_REST, |onward| onward.start);
+        if !self
+            .pace
+            .survey(&self.curve, &self.limits, filter, &start, share)
+        {
+            return false;
+        }
+        for _ in 0..ROUNDS {
+            if !self.propose(filter, most, onward) {
+                return false;
+            }
+            let Some(effort) = self.effort.checked_sub(self.spline.pieces()) else {
+                return false;
+            };
+            self.effort = effort;
+            let mut kept = true;
+            for index in 0..self.spline.pieces() {
+                if let Some(excess) = self.spline.excess(index, &self.curve, &self.limits) {
+                    kept = false;
+                    let controls = &self.spline.controls[index..index + 4];
+                    self.pace
+                        .slow(controls[0].distance, controls[3].distance, &excess);
+                }
+            }
+            if kept && filter.averages() && !self.spline.passes_in_order(&self.curve) {
+                return false;
+            }
+            if kept {
+                self.spline.handover = self.pace.handover();
+                return true;
+            }
+            self.pace.settle();
+        }
+        false
+    }
+
+    /// Control points of a motion through the stretch; `false` when it takes too long.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        clippy::cast_sign_loss,
+        reason = "the count is bounded before it is cast"
+    )]
+    fn propose(&mut self, filter: &Filter, most: f64, onward: Option<&Onward<N>>) -> bool {
+        let Self {
+            curve,
+            pace,
+            spline,
+            ..
+        } = self;
+        let Some(duration) = pace.arrange(filter.step) else {
+            return false;
+        };
+        if duration >= most || duration > filter.step * MOST_STEPS as f64 {
+            return false;
+        }
+        spline.clear(filter);
+        let mut first = 0.0;
+        let begin = curve.control_at(0.0, 0);
+        if let Some(onward) = onward {
+            spline.origin = onward.first - 4.0 * filter.step;
+            first = onward.first;
+            let [last, next] = onward.progress;
+            for (control, distance) in onward.controls.iter().zip([last, last, last]) {
+                spline.push(*control, distance);
+            }
+            spline.push(curve.control_at(next, onward.controls[2].leg), next);
+        } else {
+            // Whole steps from rest to rest.
+            let steps = (duration / filter.step).round().max(FEWEST_STEPS);
+            spline.step = duration / steps;
+            spline.origin = -spline.step;
+            spline.push(begin, 0.0);
+        }
+        let settled = spline.controls.len() - 1;
+        let mut near = 0;
+        pace.walk(first, spline.step, |distance, _, _| {
+            let control = curve.control_at(distance, near);
+            near = control.leg;
+            spline.push(control, distance);
+            spline.controls.len() <= MOST_STEPS
+        });
+        let end = curve.end();
+        let length = curve.length();
+        if onward.is_none() {
+            // Rounding decides whether the last instant is among them.
+            let steps = (duration / spline.step).round() as usize;
+            spline.controls.truncate(steps + 1);
+            spline.progress.truncate(steps + 1);
+        }
+        if filter.averages() {
+            spline.push(end, length);
+            spline.average(filter, curve);
+        } else {
+            spline.push(end, length);
+            spline.push(end, length);
+            spline.sharpen(settled.max(1), curve, filter.sharpening);
+        }
+        // Three equal control points are a rest.
+        let count = spline.controls.len();
+        if onward.is_none() {
+            spline.controls[..3].fill(begin);
+        }
+        spline.controls[count - 3..].fill(end);
+        spline.duration() < most
+    }
+}
