@@ -3,11 +3,11 @@
 //! Not here: blocks, see `lower`.
 
 use crate::block::Block;
+use crate::error::machining::MachiningError;
+use crate::error::reason::Reason;
 use crate::error::{Fault, Notice, Remark};
-use crate::lower::{Lowering, MOST_MOVES};
-use crate::machining_error::MachiningError;
-use crate::place::Span;
-use crate::reason::Reason;
+use crate::interpreter::{Lowering, MOST_MOVES};
+use crate::text::place::Span;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Arc, Feedrate, Move, Vector};
 

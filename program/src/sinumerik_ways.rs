@@ -3,12 +3,12 @@
 //! Source: `AC( )` `IC( )` `DC( )` `ACP( )` `ACN( )` of the programming manual of Sinumerik 840D sl. Not here: how they
 //! are written, see `sinumerik_reader`, and where they lead, see `point` and `others`.
 
-use crate::codes::Way;
+use crate::block::codes::Way;
 use crate::error::Fault;
-use crate::machining_error::MachiningError;
-use crate::place::Span;
-use crate::reason::Reason;
+use crate::error::machining::MachiningError;
+use crate::error::reason::Reason;
 use crate::sinumerik::Line;
+use crate::text::place::Span;
 
 /// Largest place of a rotary axis that goes there a certain way, degrees.
 const WHOLE_TURN: f64 = 360.0;

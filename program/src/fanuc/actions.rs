@@ -4,6 +4,7 @@
 //! in absolute coordinates; without one it is where the tool is. Not here: data, reference points, pockets.
 
 use crate::block::AXES;
+use crate::error::reason::Reason;
 use crate::error::{Fault, Notice};
 use crate::fanuc::Fanuc;
 use crate::fanuc::block::{Taken, axes, word};
@@ -11,7 +12,6 @@ use crate::fanuc::codes::Special;
 use crate::fanuc::transforms::Turn;
 use crate::fanuc::words::Word;
 use crate::program::Program;
-use crate::reason::Reason;
 use std::io::BufRead;
 
 /// A factor without a decimal point from here on is in thousandths.
@@ -147,7 +147,8 @@ impl Fanuc {
                 center[axis] = length(&word, program)?;
             }
         }
-        let incremental = program.lowering.modal.distance == crate::codes::Distance::Incremental;
+        let incremental =
+            program.lowering.modal.distance == crate::block::codes::Distance::Incremental;
         let from = before
             .filter(|_| incremental)
             .map_or(0.0, |turn| turn.degrees);

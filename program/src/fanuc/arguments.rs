@@ -4,9 +4,9 @@
 //! its variable; of list II the triples `I J K` go on. Of two values for one variable the later holds.
 
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::memory::{Locals, UNSET};
 use crate::fanuc::words::Word;
-use crate::reason::Reason;
 
 /// Variables of list I by their letters; `G L N O P` are no arguments.
 const LETTERS: [(u8, usize); 21] = [
@@ -79,7 +79,7 @@ pub(crate) fn locals(arguments: &[Word]) -> Result<Locals, Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::place::Span;
+    use crate::text::place::Span;
 
     fn found(text: &str) -> Vec<(usize, f64)> {
         let words: Vec<Word> = text

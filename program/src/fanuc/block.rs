@@ -3,18 +3,18 @@
 //! Source: the operator's manuals of FANUC and Haas. In a block come first the modes, then the motion, then what
 //! this dialect alone has, then calls. Not here: the actions themselves.
 
+use crate::block::code::Code;
+use crate::block::codes::Motion;
 use crate::block::{AXES, Block};
-use crate::code::Code;
-use crate::codes::Motion;
 use crate::error::Fault;
+use crate::error::machining::MachiningError;
 use crate::fanuc::Fanuc;
 use crate::fanuc::codes::{Machine, Special};
 use crate::fanuc::words::{Word, words};
-use crate::lexer::Word as Plain;
-use crate::lower::Lowering;
-use crate::machining_error::MachiningError;
-use crate::place::Span;
+use crate::interpreter::Lowering;
 use crate::program::Program;
+use crate::text::lexer::Word as Plain;
+use crate::text::place::Span;
 use std::io::BufRead;
 
 /// A code with its place.
@@ -144,7 +144,7 @@ impl Fanuc {
         let line = program.flow.line();
         let modal = program.lowering.modal;
         if asked.exact_stop {
-            program.lowering.modal.path_control = crate::codes::PathControl::ExactStop;
+            program.lowering.modal.path_control = crate::block::codes::PathControl::ExactStop;
         }
         // Machine coordinates are reached at rapid.
         let rapid = asked.machine && program.block.motion.is_none();
@@ -197,7 +197,7 @@ impl Fanuc {
             .as_ref()
             .is_some_and(|on| !on.is_ending())
         {
-            let (code, state) = (taken.code, crate::once::COMPENSATED);
+            let (code, state) = (taken.code, crate::interpreter::non_modal::COMPENSATED);
             let reason = MachiningError::NotNow { code, state };
             return Err(Fault::new(taken.span, reason.into()));
         }

@@ -4,6 +4,8 @@
 //! program is found, see `course`.
 
 use crate::error::Fault;
+use crate::error::flow::FlowError;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::arguments::{ModalMacro, locals};
 use crate::fanuc::block::word;
@@ -11,11 +13,9 @@ use crate::fanuc::codes::Machine;
 use crate::fanuc::course::{Found, Kind};
 use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
-use crate::flow_error::FlowError;
-use crate::place::Span;
+use crate::flow::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
 use crate::program::Program;
-use crate::reason::Reason;
-use crate::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
+use crate::text::place::Span;
 use std::io::BufRead;
 
 /// Beyond this the digits of a `P` word before the last four are repetitions.
@@ -38,7 +38,7 @@ impl Fanuc {
                 Machine::CallBlock => 970,
                 _ => 980,
             };
-            let code = crate::code::Code::new(b'M', code);
+            let code = crate::block::code::Code::new(b'M', code);
             return Err(Fault::new(span, Reason::WordMissing { code, letter: 'P' }));
         };
         let number = whole(&called, "number of a subprogram", 0, LARGEST_NUMBER)?;
@@ -155,7 +155,7 @@ impl Fanuc {
         };
         let tenths = (code.value * 10.0).round();
         let modal = tenths > 655.0;
-        let code_of = crate::code::Code::of_number(b'G', code.value, 1);
+        let code_of = crate::block::code::Code::of_number(b'G', code.value, 1);
         if (tenths - 650.0).abs() > 0.5 && (tenths - 660.0).abs() > 0.5 {
             let what = "macros called by every block, with arguments of its own";
             let reason = match code_of {
@@ -169,7 +169,7 @@ impl Fanuc {
             return Err(Fault::new(code.span, reason));
         }
         let Some(called) = word(words, b'P') else {
-            let code_of = code_of.unwrap_or(crate::code::Code::letter(b'G'));
+            let code_of = code_of.unwrap_or(crate::block::code::Code::letter(b'G'));
             let reason = Reason::WordMissing {
                 code: code_of,
                 letter: 'P',

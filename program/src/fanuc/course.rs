@@ -3,11 +3,11 @@
 //! Source: the operator's manuals of FANUC and Haas. The lines of the file stand on the tape of the flow, those
 //! of files beside it in recordings. Not here: what a line says.
 
+use crate::error::flow::FlowError;
+use crate::error::reason::Reason;
 use crate::fanuc::labels::{Labels, blanks, is_block, program_number, stands_loop};
 use crate::flow::Flow;
-use crate::flow_error::FlowError;
-use crate::reason::Reason;
-use crate::recording::Recording;
+use crate::flow::recording::Recording;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::sync::Arc;

@@ -3,18 +3,18 @@
 //! Source: `G10` of the operator's manuals of FANUC and Haas; with `G91` values are added. Not here: parameters
 //! of the control, which are refused by name.
 
-use crate::codes::Distance;
+use crate::block::codes::Distance;
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::actions::length;
 use crate::fanuc::block::{Taken, axes, word};
 use crate::fanuc::memory::EXTENDED;
 use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
-use crate::offsets::{axis_number, origin};
+use crate::interpreter::offsets::{axis_number, origin};
+use crate::interpreter::tools::Tool;
 use crate::program::Program;
-use crate::reason::Reason;
-use crate::tools::Tool;
 use std::io::BufRead;
 use toolglide_kinematics::Vector;
 

@@ -2,13 +2,13 @@
 //!
 //! Not here: the lines of the one that runs, see `course`.
 
+use crate::error::flow::FlowError;
+use crate::error::reason::Reason;
+use crate::expression::parameters::DEEPEST_CALL;
 use crate::fanuc::course::{Course, Found, Frame, Kind, Text};
 use crate::fanuc::labels::program_number;
 use crate::flow::Flow;
-use crate::flow_error::FlowError;
-use crate::parameters::DEEPEST_CALL;
-use crate::reason::Reason;
-use crate::recording::Recording;
+use crate::flow::recording::Recording;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::sync::Arc;

@@ -3,9 +3,9 @@
 //! Source: the chapter on custom macros of the operator's manuals of FANUC and Haas. In arithmetic null
 //! counts as 0. Not here: how operators bind.
 
-use crate::arithmetic_error::ArithmeticError;
+use crate::error::arithmetic::ArithmeticError;
+use crate::expression::operations::truth;
 use crate::fanuc::value::bits;
-use crate::operations::truth;
 
 /// Numbers whose difference is below this part of the larger one, or of 1, are equal: a loop that counts in
 /// tenths ends where its programmer means.

@@ -3,20 +3,20 @@
 //! Source: `G27` to `G30` of the operator's manuals of FANUC and Haas. The reference points are those of the
 //! machine. Not here: switches, which no axis meets here.
 
-use crate::codes::Distance;
+use crate::block::codes::Distance;
 use crate::error::Fault;
+use crate::error::machining::MachiningError;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::actions::length;
 use crate::fanuc::block::{Taken, axes, word};
 use crate::fanuc::codes::Special;
 use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
-use crate::frame::Frame;
-use crate::machining_error::MachiningError;
-use crate::others::{OTHERS, ROTARY};
+use crate::interpreter::frame::Frame;
+use crate::interpreter::secondary_axes::{OTHERS, ROTARY};
+use crate::interpreter::units::within_reach;
 use crate::program::Program;
-use crate::reason::Reason;
-use crate::units::within_reach;
 use std::io::BufRead;
 use toolglide_kinematics::{Feedrate, Vector};
 

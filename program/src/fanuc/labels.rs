@@ -101,7 +101,7 @@ pub(crate) fn is_block(line: &[u8]) -> bool {
             },
             Some(b'/') => at += 1,
             Some(byte) if byte.is_ascii_alphabetic() || *byte == b':' => {
-                match crate::number::number(line, at + 1) {
+                match crate::text::number::number(line, at + 1) {
                     Ok((_, end)) => at = end,
                     Err(_) => return matches!(line.get(at + 1), Some(b'#' | b'[')),
                 }

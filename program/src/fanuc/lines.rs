@@ -2,15 +2,15 @@
 //!
 //! Not here: statements, see `statements`, and words, see `block`.
 
+use crate::error::flow::FlowError;
+use crate::error::reason::Reason;
 use crate::error::{Fault, Notice};
 use crate::fanuc::Fanuc;
 use crate::fanuc::course::Next;
 use crate::fanuc::labels::{blanks, digits, program_number};
-use crate::flow_error::FlowError;
-use crate::lexer::check_text;
-use crate::place::Span;
 use crate::program::Program;
-use crate::reason::Reason;
+use crate::text::lexer::check_text;
+use crate::text::place::Span;
 use std::io::BufRead;
 
 impl Fanuc {

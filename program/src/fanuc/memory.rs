@@ -4,11 +4,11 @@
 //! of the program where it sees them, and in mm where they are kept. Not here: variables that nobody knows
 //! before the machine runs, which are refused by name.
 
-use crate::arithmetic_error::ArithmeticError;
+use crate::error::arithmetic::ArithmeticError;
 use crate::fanuc::functions::number;
 use crate::fanuc::value::{NULL, Variables};
-use crate::lower::Lowering;
-use crate::offsets::{SYSTEMS, origin};
+use crate::interpreter::Lowering;
+use crate::interpreter::offsets::{SYSTEMS, origin};
 use std::collections::BTreeMap;
 use toolglide_kinematics::Vector;
 
@@ -166,7 +166,7 @@ impl Memory {
             return Err(ArithmeticError::NotWritable { number: variable });
         };
         let length = state.modal.units.length(number(value));
-        if length.abs() > crate::units::FARTHEST {
+        if length.abs() > crate::interpreter::units::FARTHEST {
             return Err(ArithmeticError::Overflow {
                 function: "a work offset",
             });
@@ -178,9 +178,10 @@ impl Memory {
                 state.set_common(common);
             }
             Origin::System(system, axis) => {
-                state
-                    .parameters
-                    .put(origin(system) + crate::offsets::axis_number(axis), length);
+                state.parameters.put(
+                    origin(system) + crate::interpreter::offsets::axis_number(axis),
+                    length,
+                );
                 state.take_again(system);
             }
             Origin::Extended(index, axis) => {
@@ -315,7 +316,7 @@ impl Variables for Scope<'_> {
             _ => match origin_of(variable) {
                 Some(Origin::Common(axis)) => units.written(state.offsets.common()[axis]),
                 Some(Origin::System(system, axis)) => {
-                    let place = origin(system) + crate::offsets::axis_number(axis);
+                    let place = origin(system) + crate::interpreter::offsets::axis_number(axis);
                     units.written(state.parameters.get(place))
                 }
                 Some(Origin::Extended(index, axis)) => {

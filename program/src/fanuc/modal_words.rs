@@ -3,18 +3,18 @@
 //! Source: the operator's manuals of FANUC and Haas. Not here: codes, see `taking`.
 
 use crate::block::Block;
-use crate::code::Code;
-use crate::codes::Motion;
-use crate::corners::CornerKind;
+use crate::block::code::Code;
+use crate::block::codes::Motion;
+use crate::curves::corner_breaks::CornerKind;
 use crate::error::Fault;
+use crate::error::machining::MachiningError;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::block::{Asked, position, seconds};
 use crate::fanuc::codes::{Machine, Special};
 use crate::fanuc::words::Word;
-use crate::machining_error::MachiningError;
-use crate::place::Span;
 use crate::program::Program;
-use crate::reason::Reason;
+use crate::text::place::Span;
 use std::io::BufRead;
 
 impl Fanuc {
@@ -131,13 +131,15 @@ impl Fanuc {
                     .is_some_and(|on| !on.is_ending())
                 {
                     let code = Code::letter(b'D');
-                    let state = crate::once::COMPENSATED;
+                    let state = crate::interpreter::non_modal::COMPENSATED;
                     let reason = MachiningError::NotNow { code, state };
                     return Err(Fault::new(word.span, reason.into()));
                 }
             }
         } else if asked.side {
-            let span = program.block.taker(crate::codes::Group::CutterCompensation);
+            let span = program
+                .block
+                .taker(crate::block::codes::Group::CutterCompensation);
             let span = span.map_or(Span::default(), |(_, span)| span);
             list.push(word_of(b'D', self.memory.letter(b'D'), span));
         }
@@ -155,7 +157,7 @@ impl Fanuc {
             (Some(code), ..) => {
                 self.length = Some(code);
                 if given.is_none() {
-                    let span = program.block.taker(crate::codes::Group::ToolLength);
+                    let span = program.block.taker(crate::block::codes::Group::ToolLength);
                     let span = span.map_or(Span::default(), |(_, span)| span);
                     list.push(word_of(b'H', self.memory.letter(b'H'), span));
                 }

@@ -3,13 +3,13 @@
 //! Source: the operator's manuals of FANUC and Haas. Not here: motion.
 
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::block::{Taken, position, seconds, word};
 use crate::fanuc::codes::Special;
 use crate::fanuc::memory::EXTENDED;
 use crate::fanuc::words::Word;
 use crate::program::Program;
-use crate::reason::Reason;
 use std::io::BufRead;
 
 /// Modes of `G5` by `P` that are noted: buffering and high-speed machining, on and off.

@@ -4,18 +4,18 @@
 //! the last one, `Q` the step between them; the radius of the tool `D` is taken off all circles. Not here:
 //! pockets of another shape.
 
-use crate::codes::{Distance, FeedMode, Plane};
+use crate::block::codes::{Distance, FeedMode, Plane};
+use crate::error::machining::MachiningError;
+use crate::error::reason::Reason;
 use crate::error::{Fault, Notice};
 use crate::fanuc::Fanuc;
 use crate::fanuc::actions::length;
 use crate::fanuc::block::{Taken, axes, word};
 use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
-use crate::lower::MOST_MOVES;
-use crate::machining_error::MachiningError;
+use crate::interpreter::MOST_MOVES;
+use crate::interpreter::tools::LARGEST_TOOL;
 use crate::program::Program;
-use crate::reason::Reason;
-use crate::tools::LARGEST_TOOL;
 use std::io::BufRead;
 use toolglide_kinematics::{Feedrate, Vector};
 

@@ -5,14 +5,14 @@
 //! `G91` has its centre where the tool is. Not here: `@` and `^` of LinuxCNC.
 
 use crate::block::AXES;
-use crate::codes::Distance;
+use crate::block::codes::Distance;
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::block::{position, word};
 use crate::fanuc::words::Word;
-use crate::place::Span;
 use crate::program::Program;
-use crate::reason::Reason;
+use crate::text::place::Span;
 use std::io::BufRead;
 
 /// Where polar coordinates count from, and the last ones; mm and degrees.

@@ -4,12 +4,12 @@
 //! refuses (`G65 P`, `G68 R`, `G54.1 P`, `G187`, `M97 P` and others), `,R` and `,C`, and `M98 P31001` where
 //! program 1001 is in the file. What both have, such as `#1=` and `M98 P1000`, is no sign.
 
-use crate::code::Code;
+use crate::block::code::Code;
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::labels::{blanks, block_number, program_number, stands_loop};
-use crate::number::number;
-use crate::place::Span;
-use crate::reason::Reason;
+use crate::text::number::number;
+use crate::text::place::Span;
 use std::collections::BTreeSet;
 
 /// Codes of FANUC or Haas alone, in tenths, with a letter that must stand in their block.

@@ -2,17 +2,17 @@
 //!
 //! Source: the chapter on custom macros of the operator's manuals of FANUC and Haas. Not here: calls.
 
-use crate::arithmetic_error::ArithmeticError;
 use crate::error::Fault;
+use crate::error::arithmetic::ArithmeticError;
+use crate::error::flow::FlowError;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::labels::blanks;
 use crate::fanuc::memory::{Scope, Written};
 use crate::fanuc::value::Evaluator;
 use crate::fanuc::words::{comment, nothing_behind, stray};
-use crate::flow_error::FlowError;
-use crate::place::Span;
 use crate::program::Program;
-use crate::reason::Reason;
+use crate::text::place::Span;
 use std::io::BufRead;
 
 /// Loops have numbers from 1 to this.
@@ -230,7 +230,7 @@ impl Fanuc {
         &mut self,
         variable: u32,
         value: f64,
-        state: &mut crate::lower::Lowering,
+        state: &mut crate::interpreter::Lowering,
     ) -> Result<(), ArithmeticError> {
         match self.memory.set(variable, value, state)? {
             Written::Alarm | Written::Stop => {

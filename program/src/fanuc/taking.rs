@@ -2,15 +2,15 @@
 //!
 //! Not here: what they do, and which code is which, see `codes`.
 
-use crate::code::Code;
-use crate::codes::Motion;
+use crate::block::code::Code;
+use crate::block::codes::Motion;
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::Fanuc;
 use crate::fanuc::block::{Asked, Taken};
 use crate::fanuc::codes::{Machine, Special, Use, miscellaneous, preparatory};
 use crate::fanuc::words::Word;
 use crate::program::Program;
-use crate::reason::Reason;
 use std::io::BufRead;
 
 impl Fanuc {

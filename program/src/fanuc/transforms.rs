@@ -3,7 +3,7 @@
 //! Source: `G51.1`, `G51`, `G68` and `G52` of the operator's manuals of FANUC and Haas. Not here: what a frame
 //! does to a move.
 
-use crate::frame::Frame;
+use crate::interpreter::frame::Frame;
 use toolglide_kinematics::Vector;
 
 /// A rotation about an axis through a point.

@@ -4,11 +4,11 @@
 //! the loosest bind functions, `* / MOD AND`, `+ - OR XOR`, comparisons. Angles are in degrees. Not here:
 //! where variables have their values from.
 
-use crate::arithmetic_error::ArithmeticError;
 use crate::error::Fault;
+use crate::error::arithmetic::ArithmeticError;
 use crate::fanuc::functions::{BITS, apply, compare, operate};
-use crate::number::number;
-use crate::place::Span;
+use crate::text::number::number;
+use crate::text::place::Span;
 
 /// Brackets, signs and `#` within each other.
 const DEEPEST: u32 = 64;

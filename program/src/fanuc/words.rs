@@ -4,12 +4,12 @@
 //! (calculator-type input). A word whose value is null is left out. Not here: what a word means.
 
 use crate::error::Fault;
+use crate::error::reason::Reason;
 use crate::fanuc::labels::blanks;
 use crate::fanuc::value::{Evaluator, Variables};
-use crate::number::number;
-use crate::place::Span;
-use crate::reason::Reason;
-use crate::units::Units;
+use crate::interpreter::units::Units;
+use crate::text::number::number;
+use crate::text::place::Span;
 
 /// A word.
 #[derive(Clone, Copy, Debug, PartialEq)]
