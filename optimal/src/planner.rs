@@ -3,13 +3,13 @@
 //! Source: ours. Both plan the whole path; of every stretch the faster motion is handed out, so that it is
 //! never slower than smoothed corners. Not here: either plan, and what a stretch is.
 
-use crate::durations::SequentialSolver;
-use crate::horizon::{MOST_SPANS, ROOM};
-use crate::race::Race;
+use crate::best_of::Race;
+use crate::path::spans::weakest;
 use crate::settings::Settings;
-use crate::span::weakest;
+use crate::solver::sequential::SequentialSolver;
 use crate::stream::Stream;
 use crate::window::WindowSolver;
+use crate::window::horizon::{MOST_SPANS, ROOM};
 use toolglide_kinematics::{
     Intake, Limits, MotionPlanner, Move, Piece, Plan, PlanError, Tangential, Toolpath, Vector,
     WindowTally,

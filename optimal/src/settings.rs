@@ -2,7 +2,7 @@
 //!
 //! Source: ours, from measurements. Not here: the planning.
 
-use crate::span::Fineness;
+use crate::path::spans::Fineness;
 use toolglide_kinematics::Limits;
 
 /// How much is spent on a plan: from 1, which is quick, to 9, which leaves hardly anything.

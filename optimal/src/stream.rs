@@ -4,13 +4,13 @@
 //! are planned in windows. Stops and pauses divide the path into stretches. Not here: any formula, and
 //! the comparison with other motion.
 
-use crate::chords::Chords;
-use crate::event::Event;
-use crate::horizon::Horizon;
-use crate::runs::{Joiner, Run, Vertex};
+use crate::path::chords::Chords;
+use crate::path::merge::{Joiner, Run, Vertex};
+use crate::path::spans::{Fineness, Part, cut};
 use crate::settings::Settings;
-use crate::span::{Fineness, Part, cut};
 use crate::window::WindowSolver;
+use crate::window::horizon::Horizon;
+use crate::window::output::Event;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Move, Path, Pause, Serves, Vector, WindowTally};
 
@@ -213,7 +213,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::durations::SequentialSolver;
+    use crate::solver::sequential::SequentialSolver;
     use toolglide_kinematics::{Feedrate, Tolerance};
 
     fn stream() -> Stream<SequentialSolver<2>, 2> {

@@ -3,7 +3,7 @@
 //! Source: as [`problem`](super). Not here: which point of the motion keeps it.
 
 use super::{Problem, count};
-use crate::rows::{Disc, Tube};
+use crate::problem::constraints::{Disc, Tube};
 use crate::window::{Segment, WindowDefect};
 use toolglide_kinematics::{Vector, vector::length_and_direction};
 

@@ -1,0 +1,298 @@
+//! Windows, one after the other: plan to a stop, hand out the first part, go on from there.
+//!
+//! Source: ours. The plan always ends in a full stop at the end of what has been planned. Each window
+//! starts in the state up to which motion has been handed out, covers what was planned behind it and
+//! something new, and ends at rest, or where the middle of a long move begins: that is travelled in
+//! closed form, and the next window starts behind it. A motion takes the place of the plan only when it
+//! has been accepted and is not worse; else the plan stays as it is, the motion comes to its stop, and goes on
+//! from rest. A stretch whose windows cost more than its motion earns is given up: the plan before is carried out, and
+//! every line up to the next goal is travelled from rest to rest. Not here: one window, see [`attempt`].
+
+mod attempt;
+mod travel;
+
+use crate::path::spans::{Span, weakest};
+use crate::settings::Settings;
+use crate::solver::budget::{Budget, Credit};
+use crate::window::initial_guess::Guess;
+use crate::window::output::Event;
+use crate::window::straight_line;
+use crate::window::{EndState, Segment, WindowMotion, WindowSolver};
+use std::collections::VecDeque;
+use toolglide_kinematics::{Limits, Vector, WindowTally};
+
+/// What is handed out of a window, in times to stop.
+const COMMIT: f64 = 4.0;
+
+/// Of the spans of a window one in so many is not handed out at least, however short they are.
+const UNCOMMITTED: usize = 3;
+
+/// How much longer a window up to a stop of the path may be, in times to stop: then what is left is
+/// planned at once.
+const LONGER: f64 = 2.5;
+
+/// How many more intervals a stretch has that is planned at once: there is but one window to be solved.
+const REFINED: f64 = 1.3;
+
+/// Fewest spans of a window, where there are as many.
+const FEWEST_SPANS: usize = 4;
+
+/// Most spans of a window.
+pub(crate) const MOST_SPANS: usize = 100;
+
+/// Most intervals of a window: rounding grows with the sixth power of their number.
+const MOST_STEPS: usize = 560;
+
+/// Room for the intervals of a window, whose last span may reach beyond the most.
+pub(crate) const ROOM: usize = MOST_STEPS + crate::path::spans::MOST_STEPS;
+
+/// Share of every limit that is kept back from the solver, which meets them to its own precision only.
+const MARGIN: f64 = 2e-4;
+
+/// Plans spans from stop to stop.
+#[derive(Clone, Debug)]
+pub(crate) struct Horizon<S, const N: usize> {
+    solver: S,
+    solves: usize,
+    /// Length of a window in times to stop.
+    window: f64,
+    limits: Limits<N>,
+    shrunk: Limits<N>,
+    weakest: (f64, f64),
+    spans: VecDeque<Span<N>>,
+    /// Where motion has been handed out to.
+    start: EndState<N>,
+    /// Where the last span leads, once that is known.
+    goal: Option<EndState<N>>,
+    /// The plan from there to a stop at the end of the first `planned` spans.
+    current: WindowMotion<N>,
+    planned: usize,
+    /// What the guess of those spans was.
+    expected: Vec<f64>,
+    free: Guess,
+    guess: Guess,
+    segments: Vec<Segment<N>>,
+    shrunk_segments: Vec<Segment<N>>,
+    candidate: WindowMotion<N>,
+    other: WindowMotion<N>,
+    ratios: Vec<f64>,
+    events: VecDeque<Event<N>>,
+    tally: WindowTally,
+    credit: Credit,
+    /// What the window under way may still cost.
+    budget: Budget,
+    /// Whether the stretch up to the next goal is given up: its windows cost more than its motion earns.
+    given_up: bool,
+    /// Whether the motion is being executed, so that nothing is given up.
+    leading: bool,
+}
+
+fn motion_for<const N: usize>() -> WindowMotion<N> {
+    WindowMotion {
+        durations: Vec::with_capacity(MOST_SPANS),
+        states: Vec::with_capacity(ROOM + 1),
+        jerks: Vec::with_capacity(ROOM),
+    }
+}
+
+impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
+    /// At rest at `start`.
+    pub(crate) fn new(solver: S, start: Vector<N>, settings: &Settings<N>) -> Self {
+        Self {
+            solver,
+            solves: settings.effort.solves(),
+            window: settings.effort.window(),
+            limits: settings.limits,
+            shrunk: settings
+                .limits
+                .scaled(1.0 - MARGIN)
+                .unwrap_or(settings.limits),
+            weakest: weakest(&settings.limits),
+            spans: VecDeque::with_capacity(4 * MOST_SPANS),
+            start: EndState::rest(start),
+            goal: None,
+            current: motion_for(),
+            planned: 0,
+            expected: Vec::with_capacity(MOST_SPANS),
+            free: Guess::with_capacity(4 * MOST_SPANS),
+            guess: Guess::with_capacity(MOST_SPANS),
+            segments: Vec::with_capacity(MOST_SPANS),
+            shrunk_segments: Vec::with_capacity(MOST_SPANS),
+            candidate: motion_for(),
+            other: motion_for(),
+            ratios: Vec::with_capacity(MOST_SPANS),
+            events: VecDeque::with_capacity(2 * MOST_STEPS),
+            tally: WindowTally::default(),
+            credit: Credit::new(N),
+            budget: Budget::default(),
+            given_up: false,
+            leading: false,
+        }
+    }
+
+    /// Takes the next span.
+    pub(crate) fn push(&mut self, span: Span<N>) {
+        self.spans.push_back(span);
+    }
+
+    /// Plans as far as can be seen; the last line has been pushed to its end.
+    pub(crate) fn plan(&mut self) {
+        while self.advance() {}
+    }
+
+    /// The motion rests at the end of the last span, `end`.
+    pub(crate) fn rest(&mut self, end: Vector<N>) {
+        self.close(EndState::rest(end));
+    }
+
+    fn close(&mut self, goal: EndState<N>) {
+        self.goal = Some(goal);
+        while self.advance() {}
+        self.goal = None;
+        self.given_up = false;
+    }
+
+    /// Whether the motion is being executed before its end is known: nothing is given up then, whatever it costs.
+    pub(crate) fn lead(&mut self, leading: bool) {
+        self.leading = leading;
+        self.given_up &= !leading;
+    }
+
+    /// Whether its windows have cost nearly all that motion has earned.
+    pub(crate) fn is_short(&self) -> bool {
+        self.credit.is_short()
+    }
+
+    /// Whether motion was handed out up to a state that is not one of rest.
+    fn moves(&self) -> bool {
+        self.start.velocity.norm_squared() > 0.0
+    }
+
+    /// Whether the last span leads to a state that is not one of rest.
+    fn passes(&self) -> bool {
+        self.goal
+            .is_some_and(|goal| goal.velocity.norm_squared() > 0.0)
+    }
+
+    /// The next piece of motion that is settled, or joint.
+    pub(crate) fn pull(&mut self) -> Option<Event<N>> {
+        self.events.pop_front()
+    }
+
+    /// How many windows there were, and what they cost.
+    pub(crate) fn tally(&self) -> WindowTally {
+        WindowTally {
+            work: self.credit.spent(),
+            ..self.tally
+        }
+    }
+
+    /// Plans a window and hands out its first part; `false` when nothing can be done yet. Where there is
+    /// a goal, the motion comes to it.
+    fn advance(&mut self) -> bool {
+        let known = self.spans.len();
+        if known == 0 {
+            return false;
+        }
+        if self.given_up {
+            self.carry_out();
+            return true;
+        }
+        let closing = self.goal.is_some();
+        let speed = self.start.velocity.norm();
+        let open = !closing || self.passes();
+        self.free.fill(self.spans.iter(), speed, open, self.weakest);
+        let (reach, enough) = self.reach(self.window, FEWEST_SPANS);
+        let mut window = reach.max((self.planned + 1).min(known));
+        if closing && self.fits_at_once(known) {
+            window = known;
+            if self.planned == 0 {
+                self.refine();
+            }
+        }
+        if closing && window == known && self.planned == known && !self.passes() {
+            self.commit(known);
+            return true;
+        }
+        // What comes after the window is known, too: the path may end there.
+        let enough = enough && self.reach(self.window + LONGER, FEWEST_SPANS).1;
+        if !closing && (!enough || window == self.planned) {
+            return false;
+        }
+        if closing && self.planned == 0 && straight_line::on_one_line(self.spans.iter()) == known {
+            // A straight line is known in closed form.
+            self.travel_a_line();
+            return true;
+        }
+        self.tally.windows += 1;
+        if let Some(planned) = self.improve(window) {
+            let (first, _) = self.reach(COMMIT, 1);
+            let part = if closing && planned == known {
+                known
+            } else {
+                first.min(planned - planned.div_ceil(UNCOMMITTED)).max(1)
+            };
+            self.commit(part);
+        } else {
+            self.tally.kept += 1;
+            self.carry_out();
+        }
+        true
+    }
+
+    /// Hands out the plan there is to its stop; where there is none, the next line.
+    fn carry_out(&mut self) {
+        if self.planned > 0 {
+            self.commit(self.planned);
+        } else {
+            self.travel_a_line();
+        }
+    }
+
+    /// How many spans take some times to stop, and whether there are as many.
+    fn reach(&mut self, stops: f64, fewest: usize) -> (usize, bool) {
+        let (mut time, mut stop_time, mut nodes) = (0.0, 0.0_f64, 0);
+        let free = self.free.times.iter().zip(&self.free.steady);
+        for (index, (span, (duration, steady))) in self.spans.iter().zip(free).enumerate() {
+            if index >= fewest && time >= stops * stop_time {
+                return (index, true);
+            }
+            let steps = if span.steps > 0 {
+                span.steps
+            } else {
+                span.steps_for(*duration, *steady)
+            };
+            if index > 0 && nodes + steps > MOST_STEPS || index >= MOST_SPANS {
+                return (index, true);
+            }
+            nodes += steps;
+            time += duration;
+            stop_time = stop_time.max(span.stop_time);
+        }
+        let enough = time >= stops * stop_time && self.spans.len() >= fewest;
+        (self.spans.len(), enough)
+    }
+
+    /// Cuts the time of a stretch that is planned at once more finely.
+    fn refine(&mut self) {
+        let free = self.free.times.iter().zip(&self.free.steady);
+        for (span, (duration, steady)) in self.spans.iter_mut().zip(free) {
+            if span.steps == 0 {
+                span.steps = span.steps_for(REFINED * duration, *steady);
+            }
+        }
+    }
+
+    /// Whether all that is left makes one window that is not much longer than usual.
+    fn fits_at_once(&mut self, known: usize) -> bool {
+        self.reach(self.window + LONGER, FEWEST_SPANS).0 == known
+    }
+
+    /// Where a window of the first `count` spans ends: at rest, or at the goal.
+    fn end(&self, count: usize) -> EndState<N> {
+        match self.goal {
+            Some(goal) if count == self.spans.len() => goal,
+            _ => EndState::rest(self.spans[count - 1].end),
+        }
+    }
+}

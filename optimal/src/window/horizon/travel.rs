@@ -1,0 +1,128 @@
+//! What is handed out: the plan of a window, the middle of a long move, a line from rest to rest.
+//!
+//! Source: ours. What is handed out earns what the windows behind it may cost. Not here: when that is, see
+//! [`horizon`](super).
+
+use crate::path::spans::{Cruise, steps};
+use crate::window::horizon::Horizon;
+use crate::window::output::{Event, Joint};
+use crate::window::straight_line;
+use crate::window::straight_line::Line;
+use crate::window::{EndState, WindowSolver};
+use toolglide_kinematics::{Piece, Sample, Serves};
+
+impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
+    /// The last span leads to the middle of a long move, on which motion needs no planning.
+    pub(crate) fn cruise(&mut self, cruise: &Cruise<N>) {
+        let Cruise {
+            direction, speed, ..
+        } = *cruise;
+        let at = |position| EndState {
+            velocity: direction * speed,
+            ..EndState::rest(position)
+        };
+        self.close(at(cruise.start));
+        // Where no window led to it, the motion rests here.
+        let entry = if self.moves() { speed } else { 0.0 };
+        let line = Line {
+            start: cruise.start,
+            end: cruise.end,
+            direction,
+            limits: cruise.limits,
+            serves: cruise.serves,
+        };
+        if !line.travel([entry, speed], |piece| self.pass(&piece, cruise)) {
+            self.events.push_back(Event::Lost);
+        }
+        self.start = at(cruise.end);
+    }
+
+    /// Hands out a piece of the middle of a long move, with a joint where that is at the feedrate.
+    fn pass(&mut self, piece: &Piece<N>, cruise: &Cruise<N>) {
+        self.credit.earn(piece.duration());
+        let start = piece.at(0.0);
+        let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
+        let Serves { first, last } = cruise.serves;
+        if !steady || first != last {
+            self.events.push_back(Event::Piece(*piece));
+            return;
+        }
+        let half = 0.5 * piece.duration();
+        let joint = Joint {
+            index: first,
+            position: piece.position_at(half),
+            velocity: start.velocity,
+        };
+        let rest = Sample {
+            position: joint.position,
+            ..start
+        };
+        let halves = [
+            Piece::new(&start, half, joint.position, cruise.serves),
+            Piece::new(&rest, half, piece.end(), cruise.serves),
+        ];
+        self.events.push_back(Event::Piece(halves[0]));
+        self.events.push_back(Event::Joint(joint));
+        self.events.push_back(Event::Piece(halves[1]));
+    }
+
+    /// Hands out the plan of the first `count` spans.
+    pub(super) fn commit(&mut self, count: usize) {
+        let mut node = 0;
+        for (span, duration) in self.spans.drain(..count).zip(&self.current.durations) {
+            self.credit.earn(*duration);
+            let interval = duration / steps(span.steps);
+            for _ in 0..span.steps {
+                let state = &self.current.states[node];
+                let start = Sample {
+                    position: state.position,
+                    velocity: state.velocity,
+                    acceleration: state.acceleration,
+                    jerk: self.current.jerks[node],
+                };
+                node += 1;
+                let end = self.current.states[node].position;
+                let piece = Piece::new(&start, interval, end, span.serves);
+                self.events.push_back(Event::Piece(piece));
+            }
+        }
+        self.start = self.current.states[node];
+        self.planned -= count;
+        self.current.durations.drain(..count);
+        self.expected.drain(..count);
+        self.current.states.drain(..node);
+        self.current.jerks.drain(..node);
+        if self.planned == 0 {
+            self.current.states.clear();
+        }
+    }
+
+    /// Travels the next straight line to its end: to the goal if that is there, else to a stop.
+    pub(super) fn travel_a_line(&mut self) {
+        let count = straight_line::on_one_line(self.spans.iter());
+        let (Some(first), Some(last)) = (self.spans.front(), self.spans.get(count - 1)) else {
+            return;
+        };
+        let line = Line::of(first, last);
+        let entry = self.start.velocity.norm();
+        let goal = self.end(count);
+        let exit = goal.velocity.norm();
+        let mut end = goal;
+        if !line.travel([entry, exit], |piece| {
+            self.events.push_back(Event::Piece(piece))
+        }) {
+            end = EndState::rest(line.end);
+            if !line.travel([entry, 0.0], |piece| {
+                self.events.push_back(Event::Piece(piece))
+            }) {
+                self.events.push_back(Event::Lost);
+            }
+        }
+        self.start = end;
+        for span in self.spans.drain(..count) {
+            // Others would not stop here.
+            self.credit.earn(span.length / span.limits.velocity);
+        }
+        self.expected.clear();
+    }
+}
