@@ -6,37 +6,24 @@
 //! while a path streams in; [`plan`] does so for a whole toolpath. This crate does not know
 //! kinematic corner smoothing, machines or programs.
 
-mod arcs;
-mod bend;
-mod bound;
-mod chain;
 mod chords;
-mod circle;
-mod command;
-mod cubic;
 mod error;
-mod kernel;
+mod filter;
 mod lookahead;
-mod merge;
-mod mode;
 mod planner;
 mod pulse;
-mod queue;
-mod resonator;
+mod segment_merger;
 mod settings;
 mod sweep;
-mod taps;
-mod tick_pulse;
 mod ticks;
-mod train;
 
-pub use chain::{FilterChain, LONGEST_TIME_CONSTANT, MOST_FILTERS, SHORTEST_TIME_CONSTANT};
-pub use circle::largest_circle_feed;
 pub use error::FirError;
-pub use mode::Mode;
+pub use filter::chain::{FilterChain, LONGEST_TIME_CONSTANT, MOST_FILTERS, SHORTEST_TIME_CONSTANT};
+pub use filter::mode::Mode;
+pub use filter::resonator::Resonator;
+pub use filter::train::PulseTrain;
+pub use lookahead::circle_feed::largest_circle_feed;
 pub use planner::{FirInterpolation, plan};
-pub use resonator::Resonator;
 pub use settings::{Method, Settings};
-pub use tick_pulse::TickPulse;
-pub use ticks::TickFilter;
-pub use train::PulseTrain;
+pub use ticks::tick_filter::TickFilter;
+pub use ticks::tick_pulse::TickPulse;

@@ -2,12 +2,12 @@
 //!
 //! Source: sections 4.2 and 4.3. Not here: any formula; see the chain, the look-ahead and the sweep.
 
-use crate::bend::Bend;
 use crate::chords::{Chords, bulge_of};
-use crate::command::Command;
 use crate::lookahead::LookAhead;
-use crate::merge::{Leg, MERGE_SHARE, Merger, Vertex};
+use crate::lookahead::arc_feed::Bend;
+use crate::lookahead::command::Command;
 use crate::pulse::Pulse;
+use crate::segment_merger::{Leg, MERGE_SHARE, Merger, Vertex};
 use crate::settings::{Method, Settings};
 use crate::sweep::Sweep;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;

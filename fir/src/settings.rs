@@ -2,9 +2,9 @@
 //!
 //! Source: section 4.2.2 for the choice of time constants. Not here: the planning.
 
-use crate::chain::FilterChain;
-use crate::cubic::CubicChain;
 use crate::error::FirError;
+use crate::filter::chain::FilterChain;
+use crate::filter::cubic::CubicChain;
 use toolglide_kinematics::{Limits, Vector};
 
 /// What is left of a limit for rounding.

@@ -5,10 +5,10 @@
 //! are under way; the closed form of position, velocity and acceleration takes the rounding out
 //! every few knots. Not here: when pulses begin.
 
-use crate::command::{Command, TimedPulse};
-use crate::cubic::CubicChain;
-use crate::queue::Queue;
-use crate::taps::{SAME_INSTANT, Taps};
+use crate::filter::cubic::CubicChain;
+use crate::filter::taps::{SAME_INSTANT, Taps};
+use crate::lookahead::command::{Command, TimedPulse};
+use crate::lookahead::queue::Queue;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Piece, Sample, Serves, Vector};
 

@@ -6,7 +6,7 @@
 //! what is handed out of shorter moves.
 
 use super::LookAhead;
-use crate::command::Command;
+use crate::lookahead::command::Command;
 use crate::pulse::Pulse;
 use crate::settings::designed_for;
 

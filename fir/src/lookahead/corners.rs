@@ -4,7 +4,7 @@
 //! feedrates; the choice is ours and is not proved: the correction makes it safe. Not here: the bound.
 
 use super::{AIM, LookAhead};
-use crate::bend::turning_feed;
+use crate::lookahead::arc_feed::turning_feed;
 use crate::pulse::Pulse;
 use toolglide_kinematics::largest_multiple;
 

@@ -2,9 +2,9 @@
 //!
 //! Source: none; many pulses share one arc. Not here: how that is found, see the bend.
 
-use crate::bend::Bend;
 use crate::chords::Shape;
-use crate::cubic::CubicChain;
+use crate::filter::cubic::CubicChain;
+use crate::lookahead::arc_feed::Bend;
 use std::collections::VecDeque;
 use toolglide_kinematics::Vector;
 

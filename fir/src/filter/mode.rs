@@ -2,8 +2,8 @@
 //!
 //! Source: section 4.2.2, equations 4.10 to 4.12; the damped residual is ours. Not here: simulation.
 
-use crate::chain::FilterChain;
 use crate::error::FirError;
+use crate::filter::chain::FilterChain;
 use std::f64::consts::TAU;
 use toolglide_kinematics::SamplePeriod;
 use toolglide_kinematics::nalgebra::Complex;

@@ -3,7 +3,7 @@
 //! Source: equations 4.3 to 4.7, replaced by one formula for any number of filters and every order
 //! of durations: the sum over all subsets of the filters of truncated powers. Not here: moves.
 
-use crate::chain::FilterChain;
+use crate::filter::chain::FilterChain;
 use toolglide_kinematics::nalgebra::Complex;
 
 /// Relative precision of the inverse, dimensionless: a few roundings.

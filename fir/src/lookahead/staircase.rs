@@ -5,8 +5,8 @@
 //! feedrate asks. A feedrate that falls never increases the bound of the deviation: it is as good as many
 //! small dwells. Not here: that bound, and where a chain has to wait.
 
-use super::LookAhead;
-use crate::bound::TOUCH;
+use crate::lookahead::LookAhead;
+use crate::lookahead::bound::TOUCH;
 use crate::pulse::Pulse;
 
 /// Most steps from rest to the largest feedrate: bounds memory.

@@ -4,8 +4,8 @@
 //! and has no root for large tolerances; the exact root is found instead. Not here: centripetal
 //! acceleration, which the planner bounds.
 
-use crate::chain::FilterChain;
 use crate::error::FirError;
+use crate::filter::chain::FilterChain;
 
 /// Most steps towards the root; some ten are enough.
 const STEPS: u32 = 60;

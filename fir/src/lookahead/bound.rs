@@ -8,7 +8,7 @@
 //! distance is that of a corner, and there it bounds the corner error, too. A longer dwell anywhere
 //! never increases it. Not here: what is done about it.
 
-use crate::cubic::CubicChain;
+use crate::filter::cubic::CubicChain;
 use crate::pulse::{NEARLY, Pulse};
 use toolglide_kinematics::Vector;
 

@@ -3,8 +3,8 @@
 //! Source: equations 4.1 to 4.7; the third derivative of two moving averages is four impulses, and a comb
 //! repeats them. Not here: what the jerk is integrated to.
 
-use crate::cubic::CubicChain;
-use crate::queue::Queue;
+use crate::filter::cubic::CubicChain;
+use crate::lookahead::queue::Queue;
 use toolglide_kinematics::Vector;
 
 /// Instants nearer than this are one, s: far below any period and above the rounding of times of some

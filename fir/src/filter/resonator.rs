@@ -5,7 +5,7 @@
 //! of the acceleration at its frequency. Not here: the motion.
 
 use crate::error::FirError;
-use crate::mode::Mode;
+use crate::filter::mode::Mode;
 use std::f64::consts::TAU;
 use toolglide_kinematics::nalgebra::Complex;
 

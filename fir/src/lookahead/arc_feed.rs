@@ -4,8 +4,8 @@
 //! the middle of an arc are ours. Not here: the exact root, see the circle, nor where chords end.
 
 use crate::chords::Chords;
-use crate::circle::angular_velocity;
-use crate::cubic::CubicChain;
+use crate::filter::cubic::CubicChain;
+use crate::lookahead::circle_feed::angular_velocity;
 use toolglide_kinematics::{Arc, Vector, largest_multiple};
 
 /// By how much the bound may exceed the tolerance in the middle of an arc, where it is larger than the

@@ -6,8 +6,8 @@
 //! proved of moving averages holds for it, and plans use its responses, not those of the chain.
 //! Not here: moves.
 
-use crate::chain::FilterChain;
 use crate::error::FirError;
+use crate::filter::chain::FilterChain;
 
 /// Teeth of the comb: the third filter and those after it differ from it in position by the square
 /// of a tooth times the acceleration over 24, a tenth of a micrometre where parts are machined.

@@ -6,9 +6,9 @@
 //! the arc bends away from its chord, so that there the motion is as far inside of the arc everywhere.
 //! Not here: the bound.
 
-use super::LookAhead;
-use crate::bend::STEADY_EXCESS;
 use crate::chords::Shape;
+use crate::lookahead::LookAhead;
+use crate::lookahead::arc_feed::STEADY_EXCESS;
 use crate::pulse::Pulse;
 
 /// Share of the sagitta of chords that a corner beside them leaves unused before anything is known of its

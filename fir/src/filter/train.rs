@@ -4,8 +4,8 @@
 //! the pieces of a plan but the responses of the chain, so each checks the other. Not here: when
 //! pulses begin so that a tolerance is kept, which the planner decides.
 
-use crate::chain::FilterChain;
 use crate::error::FirError;
+use crate::filter::chain::FilterChain;
 use toolglide_kinematics::nalgebra::Complex;
 use toolglide_kinematics::{Arc, Vector};
 

@@ -9,23 +9,29 @@
 //! the bound itself.
 
 mod alone;
-mod choice;
+pub(crate) mod arc_feed;
+pub(crate) mod arcs;
+pub(crate) mod bound;
+pub(crate) mod circle_feed;
+pub(crate) mod command;
+mod corner_allowance;
 mod corners;
 mod correction;
+mod feasibility;
 mod feedrates;
-mod in_step;
-mod ramp;
-mod room;
+pub(crate) mod queue;
+mod staircase;
 mod stops;
+mod time_constants;
 
-use crate::arcs::Arcs;
-use crate::bend::Bend;
-use crate::bound::Schedule;
 use crate::chords::Shape;
-use crate::command::{Command, TimedPulse};
-use crate::cubic::CubicChain;
+use crate::filter::cubic::CubicChain;
 use crate::pulse::Pulse;
 use crate::settings::{designed_for, largest_change};
+use arc_feed::Bend;
+use arcs::Arcs;
+use bound::Schedule;
+use command::{Command, TimedPulse};
 use corners::RunEnd;
 use correction::Standing;
 use feedrates::Corners;

@@ -4,10 +4,10 @@
 //! corners and curves less, and dwells less; which feedrate to design for depends on the path, so several
 //! are tried whenever motion begins. Not here: how pulses are timed behind a chain.
 
-use super::LookAhead;
-use super::ramp::STEPS;
-use crate::command::Command;
-use crate::cubic::CubicChain;
+use crate::filter::cubic::CubicChain;
+use crate::lookahead::LookAhead;
+use crate::lookahead::command::Command;
+use crate::lookahead::staircase::STEPS;
 use crate::settings::{designed_for, largest_change};
 
 /// Feedrates that chains are designed for: that of the program, and each half of the one before.

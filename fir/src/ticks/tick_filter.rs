@@ -6,9 +6,9 @@
 //! last few commands, ours, make them so, and the output is that of the closed form at every tick. Not
 //! here: when pulses begin.
 
-use crate::chain::FilterChain;
 use crate::error::FirError;
-use crate::tick_pulse::TICK_ROUNDING;
+use crate::filter::chain::FilterChain;
+use crate::ticks::tick_pulse::TICK_ROUNDING;
 use std::ops::{AddAssign, Mul, Sub};
 use toolglide_kinematics::SamplePeriod;
 

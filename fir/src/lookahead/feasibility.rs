@@ -3,8 +3,8 @@
 //! Source: ours. Shares nothing with the search of feedrates but the bound on the change of velocity.
 //! Not here: what is done where it is broken.
 
-use super::LookAhead;
-use crate::bound::TOUCH;
+use crate::lookahead::LookAhead;
+use crate::lookahead::bound::TOUCH;
 use toolglide_kinematics::Vector;
 
 /// What a change of velocity may exceed its bound by, relative.

@@ -1,0 +1,9 @@
+//! Evaluates chains of moving averages: kernels, exact motion behind them, modes of vibration.
+
+pub(crate) mod chain;
+pub(crate) mod cubic;
+pub(crate) mod kernel;
+pub(crate) mod mode;
+pub(crate) mod resonator;
+pub(crate) mod taps;
+pub(crate) mod train;
