@@ -5,37 +5,21 @@
 //! takes legs of poses and gives pieces of motion; [`PoseMethod`] says how corners are taken. This
 //! crate knows machines by forward and inverse kinematics only, and no program.
 
-mod accumulate;
-mod block;
-mod corner;
-mod cuts;
+mod axis_limits;
 mod error;
-mod follow;
-mod joint;
-mod lay;
+mod output;
 mod planner;
-mod pole;
-mod pulses;
-mod relax;
-mod resolve;
-mod sampler;
-mod screen;
-mod series;
+mod pose;
 mod settings;
-mod start;
-mod steps;
-mod swing;
+mod singularity;
 mod timing;
-mod tool;
-mod way;
-mod window;
 
-pub use block::PoseBlock;
-pub use corner::PoseCorner;
 pub use error::FiveAxisError;
+pub use output::sampler::{PoseSampler, PoseTick};
 pub use planner::{PosePlanner, Slowdown};
-pub use resolve::Resolver;
-pub use sampler::{PoseSampler, PoseTick};
+pub use pose::block::PoseBlock;
+pub use pose::corner::PoseCorner;
+pub use pose::resolve::Resolver;
+pub use pose::start::start_of;
+pub use pose::swing::{RotarySwing, Swing};
 pub use settings::{PoseMethod, PoseSettings};
-pub use start::start_of;
-pub use swing::{RotarySwing, Swing};

@@ -7,10 +7,10 @@
 //! here: what the moves take.
 
 use super::row::Section;
-use crate::joint::JointBlock;
-use crate::relax::AIM;
+use crate::axis_limits::axis_path::Slopes;
+use crate::axis_limits::slow_down::AIM;
+use crate::pose::joint::JointBlock;
 use crate::settings::PoseSettings;
-use crate::way::Slopes;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, SamplePeriod};
 

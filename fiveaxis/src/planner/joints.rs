@@ -5,11 +5,11 @@
 use super::choice::Choice;
 use super::row::Section;
 use super::{NOTABLE, PosePlanner, Slowdown};
+use crate::axis_limits::slow_down::{Stretch, relax};
 use crate::error::FiveAxisError;
-use crate::joint::{JointBlock, JointStretch};
-use crate::lay::{intervals, knots};
-use crate::relax::{Stretch, relax};
-use crate::steps::Steps;
+use crate::output::pieces::{intervals, knots};
+use crate::pose::joint::{JointBlock, JointStretch};
+use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{AxesPiece, Axis, PoseFeed, PoseLeg, PosePath, PosePiece};
 

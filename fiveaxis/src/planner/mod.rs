@@ -10,7 +10,7 @@ mod tool;
 mod usage;
 
 use crate::error::FiveAxisError;
-use crate::lay::rest;
+use crate::output::pieces::rest;
 use crate::settings::PoseSettings;
 use std::collections::VecDeque;
 use toolglide_kinematics::{

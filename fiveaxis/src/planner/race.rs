@@ -6,14 +6,14 @@
 
 use super::choice::Choice;
 use super::row::{Cut, Section};
-use crate::block::PoseBlock;
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::slow_down::{Stretch, relax};
 use crate::error::FiveAxisError;
-use crate::follow::Worst;
-use crate::lay::{intervals, knots, piece};
-use crate::relax::{Stretch, relax};
+use crate::output::pieces::{intervals, knots, piece};
+use crate::pose::block::PoseBlock;
+use crate::pose::tool::ToolStretch;
 use crate::settings::{PoseMethod, PoseSettings};
-use crate::steps::Steps;
-use crate::tool::ToolStretch;
+use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::verify::pose::keeps_axis_limits;
 use toolglide_kinematics::{Axis, MachineKinematics, PosePiece};

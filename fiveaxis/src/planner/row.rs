@@ -2,12 +2,12 @@
 //!
 //! Source: ours. Not here: which chain, and when the blocks are.
 
-use crate::block::PoseBlock;
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::axis_path::Way;
 use crate::error::FiveAxisError;
-use crate::follow::Worst;
+use crate::pose::block::PoseBlock;
 use crate::settings::PoseSettings;
 use crate::timing::goes_on;
-use crate::way::Way;
 use std::sync::Arc;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, MachineKinematics};

@@ -5,14 +5,14 @@
 use super::race::{Contender, Race};
 use super::row::Section;
 use super::{NOTABLE, PosePlanner, Slowdown};
-use crate::block::PoseBlock;
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::axis_path::Way;
 use crate::error::FiveAxisError;
-use crate::follow::Worst;
-use crate::pole::{Spin, parts_at_pole};
+use crate::pose::block::PoseBlock;
+use crate::pose::swing::weigh;
 use crate::settings::PoseMethod;
-use crate::swing::weigh;
+use crate::singularity::{Spin, parts_at_pole};
 use crate::timing::goes_on;
-use crate::way::Way;
 use std::sync::Arc;
 use toolglide_kinematics::PoseLeg;
 

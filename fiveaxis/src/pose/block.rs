@@ -3,7 +3,7 @@
 //! Source: section 5.2, equations 5.6 to 5.9: tip and orientation share the duration of the slower
 //! one; inverse-time feed gives the duration itself. Not here: corners.
 
-use crate::swing::{RotarySwing, Swing};
+use crate::pose::swing::{RotarySwing, Swing};
 use toolglide_kinematics::{PoseFeed, PoseLeg, PosePath, Vector};
 
 /// A line of the tip and a turn of the tool that take the same time.

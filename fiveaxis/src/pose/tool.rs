@@ -2,17 +2,17 @@
 //!
 //! Source: ours. Not here: how much, see `relax`; the formulas of corners and timing.
 
-use crate::block::PoseBlock;
-use crate::corner::PoseCorner;
+use crate::axis_limits::axis_bounds::{Worst, worst};
+use crate::axis_limits::axis_path::Way;
+use crate::axis_limits::quick_bounds::{Mixed, Progress, alone, mixed, together};
+use crate::axis_limits::slow_down::{AIM, Stretch};
 use crate::error::FiveAxisError;
-use crate::follow::{Worst, worst};
-use crate::lay::piece;
-use crate::relax::{AIM, Stretch};
-use crate::screen::{Mixed, Progress, alone, mixed, together};
+use crate::output::pieces::piece;
+use crate::pose::block::PoseBlock;
+use crate::pose::corner::PoseCorner;
 use crate::settings::PoseMethod;
-use crate::steps::Steps;
+use crate::timing::commanded_progress::Steps;
 use crate::timing::{corners, goes_on, time};
-use crate::way::Way;
 use std::sync::Arc;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, MachineKinematics};
@@ -212,7 +212,7 @@ impl Stretch for ToolStretch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lay::{intervals, knots};
+    use crate::output::pieces::{intervals, knots};
     use toolglide_kinematics::{
         AxisVector, Feedrate, OrientationTolerance, PoseFeed, PoseLeg, Tolerance, ToolPose, Vector,
     };

@@ -5,10 +5,10 @@
 //! the axis turns while the tip stands still in the workpiece, and the tool goes upright again. Not here:
 //! moves that pass a pole at a distance.
 
-use crate::block::PoseBlock;
+use crate::axis_limits::axis_path::Way;
 use crate::error::FiveAxisError;
-use crate::swing::Swing;
-use crate::way::Way;
+use crate::pose::block::PoseBlock;
+use crate::pose::swing::Swing;
 use toolglide_kinematics::{
     Axis, AxisKind, AxisVector, GreatCircle, MachineKinematics, OrientationTolerance, ToolPose,
     Vector, angle_between, turned,

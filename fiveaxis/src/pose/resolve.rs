@@ -4,9 +4,9 @@
 //! forward kinematics turns into an orientation; plain mode gives positions of axes. Not here:
 //! reading programs.
 
-use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
-use crate::pole::{Spin, at_pole};
+use crate::pose::block::PoseBlock;
+use crate::singularity::{Spin, at_pole};
 use toolglide_kinematics::numeric::SAME_ORIENTATION;
 use toolglide_kinematics::{
     AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,

@@ -4,13 +4,13 @@
 //! bound how fast a block can be at best, and what its axes do while it is timed. Not here: more than
 //! one block at a time.
 
-use crate::block::PoseBlock;
-use crate::error::FiveAxisError;
-use crate::follow::Worst;
-use crate::relax::AIM;
-use crate::series::{
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::chebyshev::{
     AT_STATIONS, STATIONS, Series, bound, falls, last, slope, through_stations, value,
 };
+use crate::axis_limits::slow_down::AIM;
+use crate::error::FiveAxisError;
+use crate::pose::block::PoseBlock;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, AxisVector, MOST_AXES, MachineKinematics, Vector};
 

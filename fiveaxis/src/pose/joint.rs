@@ -4,12 +4,12 @@
 //! kinematics at the poses and at way-points between them, then every axis for itself. Where the
 //! tool goes between is nobody's concern. Not here: tool motion.
 
-use crate::block::PoseBlock;
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::slow_down::{AIM, Stretch};
 use crate::error::FiveAxisError;
-use crate::follow::Worst;
-use crate::lay::scaled;
-use crate::relax::{AIM, Stretch};
-use crate::steps::Steps;
+use crate::output::pieces::scaled;
+use crate::pose::block::PoseBlock;
+use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{AxesPiece, Axis, AxisVector, CubicInTime, Serves, cubic_at};
 

@@ -5,10 +5,10 @@
 //! the corners between them eased, whichever costs less, until nothing is.
 //! What has not changed is not measured again. Not here: the measures, see `screen` and `follow`.
 
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::remeasure::{differs, next_window};
 use crate::error::FiveAxisError;
-use crate::follow::Worst;
-use crate::steps::Steps;
-use crate::window::{differs, next_window};
+use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::Axis;
 

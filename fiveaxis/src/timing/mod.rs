@@ -3,11 +3,15 @@
 //! Source: sections 5.3.1 and 5.3.2. A stretch is what is planned between two rests. Not here: more
 //! than two blocks at once, see `accumulate`.
 
-use crate::accumulate::settle;
-use crate::block::PoseBlock;
-use crate::corner::PoseCorner;
+pub(crate) mod accumulate;
+pub(crate) mod commanded_progress;
+pub(crate) mod pulses;
+
+use crate::pose::block::PoseBlock;
+use crate::pose::corner::PoseCorner;
 use crate::settings::PoseMethod;
-use crate::steps::Steps;
+use accumulate::settle;
+use commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 
 /// The corners of a stretch: one between any two blocks in a row.

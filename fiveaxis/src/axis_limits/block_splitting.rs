@@ -3,8 +3,8 @@
 //! Source: ours. Beside a pole an axis turns half around while the tool turns by a few thousandths; without a
 //! cut the whole block would be as slow. Not here: how slow, see `relax`.
 
-use crate::block::PoseBlock;
-use crate::way::Way;
+use crate::axis_limits::axis_path::Way;
+use crate::pose::block::PoseBlock;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::Axis;
 

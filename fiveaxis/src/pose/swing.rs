@@ -4,8 +4,8 @@
 //! one radian of an axis counts as much as it swings the tool at most: `|dO| <= |(dA, sin A dC)|` on a table of A and C.
 //! Not here: how near the pole the tool comes, which is nothing to axes whose positions are given.
 
-use crate::block::PoseBlock;
 use crate::error::FiveAxisError;
+use crate::pose::block::PoseBlock;
 use toolglide_kinematics::{
     AxisKind, AxisVector, GreatCircle, KinematicsError, MOST_AXES, MachineKinematics,
     OrientationTolerance, ToolPose,

@@ -6,7 +6,7 @@
 //! has a closed form; the quartics 5.31 to 5.33 and 5.43 to 5.47 are not needed, and feedrates may
 //! differ. Not here: more than two moves at once, see `accumulate`.
 
-use crate::block::PoseBlock;
+use crate::pose::block::PoseBlock;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::Vector;
 

@@ -4,8 +4,8 @@
 //! has begun it can only go on in its own. So the moves ahead are followed from each, the
 //! nearest first, until one stays within travel. Not here: motion.
 
-use crate::block::PoseBlock;
-use crate::pole::{Spin, at_pole};
+use crate::pose::block::PoseBlock;
+use crate::singularity::{Spin, at_pole};
 use std::f64::consts::TAU;
 use toolglide_kinematics::{
     AxisKind, AxisVector, GreatCircle, KinematicsError, MachineKinematics, OrientationTolerance,

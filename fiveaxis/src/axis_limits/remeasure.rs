@@ -4,8 +4,8 @@
 //! measures, and what is done about them.
 
 use crate::error::FiveAxisError;
-use crate::lay::{intervals, knots_within};
-use crate::steps::Steps;
+use crate::output::pieces::{intervals, knots_within};
+use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 
 /// Instants nearer than this are one, s.

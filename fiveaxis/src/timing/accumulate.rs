@@ -6,9 +6,9 @@
 //! same sum over angles bounds the orientation wherever it was tried, without a proof. Blocks of
 //! which no two corners overlap need none of this. Not here: single corners, see `corner`.
 
-use crate::block::PoseBlock;
-use crate::corner::PoseCorner;
-use crate::pulses::Pulses;
+use crate::pose::block::PoseBlock;
+use crate::pose::corner::PoseCorner;
+use crate::timing::pulses::Pulses;
 use toolglide_fir::FilterChain;
 
 /// Rounds of adjusting before what cannot fail is taken instead.

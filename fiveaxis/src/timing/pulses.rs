@@ -2,7 +2,7 @@
 //!
 //! Source: ours, as `accumulate` says. Not here: what is done about a sum above its tolerance.
 
-use crate::corner::PoseCorner;
+use crate::pose::corner::PoseCorner;
 use toolglide_fir::FilterChain;
 
 /// Steps in finding when the motion is at a corner.

@@ -5,11 +5,11 @@
 //! that nothing between instants is missed; where the bound keeps the limits no inverse kinematics
 //! is needed. Not here: more than two blocks at once, see `follow`.
 
-use crate::block::PoseBlock;
+use crate::axis_limits::axis_bounds::Worst;
+use crate::axis_limits::axis_path::{AxisWay, Way};
 use crate::error::FiveAxisError;
-use crate::follow::Worst;
-use crate::swing::{RotarySwing, Swing};
-use crate::way::{AxisWay, Way};
+use crate::pose::block::PoseBlock;
+use crate::pose::swing::{RotarySwing, Swing};
 use toolglide_kinematics::{
     Axis, AxisVector, GreatCircle, MOST_AXES, MachineKinematics, ToolPose, Vector, angle_between,
     turned,

@@ -5,9 +5,9 @@
 //! filtered angle: of unit length always, on the great circle while one block is alone, and exactly
 //! as programmed when it is over. Not here: when the steps are.
 
-use crate::block::PoseBlock;
-use crate::steps::Steps;
-use crate::swing::{RotarySwing, Swing};
+use crate::pose::block::PoseBlock;
+use crate::pose::swing::{RotarySwing, Swing};
+use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{
     Axis, AxisKind, AxisVector, CubicInTime, PosePiece, RotaryPiece, Sample, Serves, ToolPiece,

@@ -5,7 +5,9 @@
 //! counted with what its last coefficients add. Where that is too much the stretch is halved. Not here:
 //! what is done about it.
 
-use crate::series::{AT_NODES, NODES, bound, falls, last, slope, through_nodes, value};
+use crate::axis_limits::chebyshev::{
+    AT_NODES, NODES, bound, falls, last, slope, through_nodes, value,
+};
 use toolglide_kinematics::{
     Axis, AxisVector, KinematicsError, MOST_AXES, MachineKinematics, PosePiece,
 };
