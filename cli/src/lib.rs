@@ -5,45 +5,20 @@
 //! wrong use or wrong input, [`INTERRUPTED`] and [`TERMINATED`] when a signal ends the process, which
 //! [`end_on_signals`] does tidily.
 
-mod args;
-mod check;
-mod compare;
-mod comparison;
-mod decimals;
-mod drawing;
+mod commands;
 mod error;
-mod filters;
-mod machines;
+mod input;
+mod methods;
 mod output;
-mod part;
 mod pipeline;
-mod plan;
-mod planner;
 mod plot;
-mod poses;
-mod progress;
-mod reproduce;
-mod score;
-mod set_points;
-mod setup;
-mod shown;
-mod signals;
-mod source;
-mod spectrum;
-mod standing;
-mod summary;
-mod survey;
-mod table;
-mod travel;
-mod values;
-mod verify;
 
 pub use error::{CliError, DONE, INTERRUPTED, OUTSIDE, REFUSED, TERMINATED};
-pub use planner::{METHODS, MethodName};
-pub use signals::end_on_signals;
+pub use input::signals::end_on_signals;
+pub use methods::{METHODS, MethodName};
 
-use args::{Command, CommandLine};
 use clap::{CommandFactory, Parser};
+use input::args::{Command, CommandLine};
 use std::ffi::OsString;
 use std::io::Write;
 
@@ -78,14 +53,14 @@ where
         }
     };
     let outcome = match command {
-        Command::Plan(args) => plan::plan(&args, out, err),
-        Command::Verify(args) => verify::verify(&args, out, err),
-        Command::Compare(args) => compare::compare(&args, out, err),
-        Command::Score(args) => score::score(&args, out, err),
-        Command::Check(args) => check::check(&args, out, err),
-        Command::Spectrum(args) => spectrum::spectrum(&args, out, err),
-        Command::Reproduce(args) => reproduce::reproduce(&args, out, err),
-        Command::Machines(args) => machines::machines(&args, out).map(|()| DONE),
+        Command::Plan(args) => commands::plan::plan(&args, out, err),
+        Command::Verify(args) => commands::verify::verify(&args, out, err),
+        Command::Compare(args) => commands::compare::compare(&args, out, err),
+        Command::Score(args) => commands::score::score(&args, out, err),
+        Command::Check(args) => commands::check::check(&args, out, err),
+        Command::Spectrum(args) => commands::spectrum::spectrum(&args, out, err),
+        Command::Reproduce(args) => commands::reproduce::reproduce(&args, out, err),
+        Command::Machines(args) => commands::machines::machines(&args, out).map(|()| DONE),
         Command::Completions { shell } => {
             let mut command = CommandLine::command();
             let mut text = Vec::new();

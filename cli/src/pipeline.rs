@@ -5,9 +5,9 @@
 //! read for every move would cost as much as planning it.
 
 use crate::error::CliError;
+use crate::input::travel::{OnAxes, Travel};
+use crate::output::csv_writer::SetPoints;
 use crate::plot::Plot;
-use crate::set_points::SetPoints;
-use crate::travel::{OnAxes, Travel};
 use std::io::BufRead;
 use std::time::{Duration, Instant};
 use toolglide_kinematics::verify::{Judge, Report};

@@ -274,7 +274,7 @@ fn told_limits(
     alike: bool,
     (scale, unit): (f64, &str),
 ) -> String {
-    let shown = |limit: f64| crate::summary::shortest(limit * scale);
+    let shown = |limit: f64| crate::output::summary::shortest(limit * scale);
     if alike {
         return match (drawn.first(), panel.limits.first()) {
             (Some(false), Some(limit)) => format!("limit ±{} {unit}", shown(*limit)),

@@ -2,7 +2,7 @@
 
 use super::render::png;
 use crate::error::CliError;
-use crate::output::OutputFile;
+use crate::output::files::OutputFile;
 use std::io::Write;
 use std::path::Path;
 

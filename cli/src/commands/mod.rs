@@ -1,0 +1,11 @@
+//! Runs the commands of `toolglide`, a file each.
+
+pub(crate) mod check;
+pub(crate) mod compare;
+pub(crate) mod machines;
+pub(crate) mod plan;
+pub(crate) mod poses;
+pub(crate) mod reproduce;
+pub(crate) mod score;
+pub(crate) mod spectrum;
+pub(crate) mod verify;

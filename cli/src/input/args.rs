@@ -1,0 +1,307 @@
+//! What may be asked for on the command line.
+//!
+//! Not here: how values are read, and what a machine or a program makes of them.
+
+use crate::input::values::{PerAxis, coordinates, mode, parameter, per_axis, positive};
+use crate::methods::METHODS;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use toolglide_machines::ModeConfig;
+use toolglide_optimal::Effort;
+
+/// Names of the languages of programs.
+const DIALECTS: [&str; 5] = ["ngc", "fanuc", "840d", "cl", "printer"];
+
+/// Plans smooth motion for machine tools and judges it.
+#[derive(Debug, Parser)]
+#[command(name = "toolglide", version, about, max_term_width = 100)]
+pub(crate) struct CommandLine {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Plan a part program: set-points, summary, plot.
+    Plan(PlanArgs),
+    /// Judge set-points, whoever made them, against a program and the limits of a machine.
+    Verify(VerifyArgs),
+    /// Plan a part program by every method and show them side by side.
+    Compare(CompareArgs),
+    /// Hold every method against the time-optimal motion within the same limits and tolerance.
+    Score(ScoreArgs),
+    /// Read a part program only: what it holds, and all that is wrong with it.
+    Check(CheckArgs),
+    /// Plan the examples of the dissertation and compare with what it prints.
+    Reproduce(ReproduceArgs),
+    /// Show what the motion of several methods does to the modes of vibration of the machine.
+    Spectrum(SpectrumArgs),
+    /// List the machines there are, or describe one.
+    Machines(MachinesArgs),
+    /// Print completions for a shell.
+    Completions {
+        /// Which shell.
+        shell: clap_complete::Shell,
+    },
+}
+
+/// The program, and the limits that its motion must keep.
+#[derive(Debug, Args)]
+pub(crate) struct JobArgs {
+    /// Part program (RS274/NGC; for plan and verify also tool poses in .apt, .cls or .ncl); - reads standard input.
+    #[arg(value_name = "PROGRAM")]
+    pub(crate) program: PathBuf,
+    /// Registered machine, or machine file.
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "gantry")]
+    pub(crate) machine: String,
+    /// Language of the program [default: by its name and its first lines].
+    #[arg(long, value_parser = DIALECTS)]
+    pub(crate) dialect: Option<String>,
+    /// Corner tolerance, mm; overrides the machine and the P of G64 in the program.
+    #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Largest velocity, mm/s: one number, or one per axis as in 500,500,250.
+    #[arg(long, value_name = "V", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) max_velocity: Option<PerAxis>,
+    /// Largest acceleration, mm/s², as above.
+    #[arg(long, value_name = "A", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) max_acceleration: Option<PerAxis>,
+    /// Largest jerk, mm/s³, as above.
+    #[arg(long, value_name = "J", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) max_jerk: Option<PerAxis>,
+    /// Where the motion starts in the coordinates of the program, mm.
+    #[arg(long, value_name = "X,Y,Z", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) start: Option<PerAxis>,
+    /// Skip what the program may ask for but a planner need not know, with warnings.
+    #[arg(long)]
+    pub(crate) lenient: bool,
+    /// Tools of the machine: a tool table as LinuxCNC writes it, in mm.
+    #[arg(long, value_name = "FILE.tbl")]
+    pub(crate) tool_table: Option<PathBuf>,
+    /// Value of a parameter that only the machine or the operator knows, as in _hal[cut.feed]=1200 or 31=5. May be
+    /// given several times.
+    #[arg(long = "parameter", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) parameters: Vec<(String, f64)>,
+    /// Print one JSON object instead of the summary.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What some methods can be told.
+#[derive(Debug, Args)]
+pub(crate) struct TuningArgs {
+    /// Time constants of the filters of the methods fir and fir-p2p, s, as in 0.05,0.03 [default:
+    /// those of the machine file, or notches on its modes, or as the limits and feedrates ask].
+    #[arg(long, value_name = "T,T,...", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) fir: Option<PerAxis>,
+    /// How much planning the method optimal may do: from 1, quick, to 9, hardly anything left to gain.
+    #[arg(long, value_name = "1-9", default_value_t = Effort::DEFAULT.level(),
+        value_parser = clap::value_parser!(u8).range(1..=9))]
+    pub(crate) effort: u8,
+}
+
+/// What tool poses need beside a program of straight axes.
+#[derive(Debug, Args)]
+pub(crate) struct PoseArgs {
+    /// Tolerance of the tool tip, mm: another name of --tolerance.
+    #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true, conflicts_with = "tolerance")]
+    pub(crate) tip_tolerance: Option<f64>,
+    /// How far the tool may turn away from its path, rad.
+    #[arg(long, value_name = "RAD", value_parser = positive, allow_hyphen_values = true, default_value_t = 0.001)]
+    pub(crate) orientation_tolerance: f64,
+    /// Largest rate at which the tool turns, rad/s [default: what the axes allow].
+    #[arg(long, value_name = "RAD/S", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) turn_rate: Option<f64>,
+    /// Axis to turn about between tool orientations that point opposite ways, in workpiece coordinates.
+    #[arg(long, value_name = "I,J,K", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) turn_about: Option<PerAxis>,
+    /// Poses that ns-jcb puts between those of the program, on every move.
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    pub(crate) way_points: u32,
+}
+
+/// What to plan.
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// How corners are taken [default: kcs, and ns-dcb for tool poses].
+    #[arg(long, value_parser = all_methods())]
+    pub(crate) method: Option<String>,
+    /// How tool poses are planned.
+    #[command(flatten)]
+    pub(crate) poses: PoseArgs,
+    /// What the method is told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// Time between two set-points, s [default: that of the machine].
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) period: Option<f64>,
+    /// Write the set-points as CSV to a file; - is standard output.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Write the tool pose behind the axes of every set-point; for machines with rotary axes.
+    #[arg(long)]
+    pub(crate) pose: bool,
+    /// Draw the motion; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to compare.
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods, as in kcs,exact-stop [default: all but the reference].
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
+    pub(crate) methods: Vec<String>,
+    /// What the method is told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// Draw the feedrates of the methods; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to score.
+#[derive(Debug, Args)]
+pub(crate) struct ScoreArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods, as in kcs,exact-stop [default: all but the reference itself].
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods())]
+    pub(crate) methods: Vec<String>,
+    /// What the method is told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// Intervals of time of the optimum, at least; more are finer and slower.
+    #[arg(long, value_name = "COUNT", default_value_t = 240,
+        value_parser = clap::value_parser!(u16).range(8..=2000))]
+    pub(crate) intervals: u16,
+    /// Prove that no motion around a single corner is faster, however it shares its time; slow.
+    #[arg(long)]
+    pub(crate) certify: bool,
+    /// Draw optimum and first method; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to check.
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// Part program; - reads standard input.
+    #[arg(value_name = "PROGRAM")]
+    pub(crate) program: PathBuf,
+    /// Language of the program [default: by its name and its first lines].
+    #[arg(long, value_parser = DIALECTS)]
+    pub(crate) dialect: Option<String>,
+    /// Tolerance where the program asks for none, mm: splines become chords within it.
+    #[arg(long, value_name = "MM", value_parser = positive, default_value = "0.01", allow_hyphen_values = true)]
+    pub(crate) tolerance: f64,
+    /// Tools of the machine: a tool table as LinuxCNC writes it, in mm.
+    #[arg(long, value_name = "FILE.tbl")]
+    pub(crate) tool_table: Option<PathBuf>,
+    /// Skip what the program may ask for but a planner need not know, with warnings.
+    #[arg(long)]
+    pub(crate) lenient: bool,
+    /// Value of a parameter that only the machine or the operator knows, as in _hal[cut.feed]=1200 or 31=5. May be
+    /// given several times.
+    #[arg(long = "parameter", value_name = "NAME=VALUE", value_parser = parameter)]
+    pub(crate) parameters: Vec<(String, f64)>,
+    /// Print one JSON object instead of the text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Whose spectra to show.
+#[derive(Debug, Args)]
+pub(crate) struct SpectrumArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', value_parser = methods(), default_value = "fir,kcs")]
+    pub(crate) methods: Vec<String>,
+    /// What some methods can be told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// A mode of vibration, as in X,7.4 or X,7.4,0.01: axis, frequency in Hz, damping ratio; instead
+    /// of those of the machine file. May be given several times.
+    #[arg(long = "mode", value_name = "AXIS,HZ[,DAMPING]", value_parser = mode)]
+    pub(crate) modes: Vec<ModeConfig>,
+    /// Draw the spectra; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to reproduce.
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    /// One section, figure or table [default: all].
+    pub(crate) name: Option<String>,
+    /// Print a JSON array instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What to judge.
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// How far the tool may turn away from its path, rad; for machines with rotary axes.
+    #[arg(long, value_name = "RAD", value_parser = positive, allow_hyphen_values = true, default_value_t = 0.001)]
+    pub(crate) orientation_tolerance: f64,
+    /// Axis to turn about between tool orientations that point opposite ways, in workpiece coordinates.
+    #[arg(long, value_name = "I,J,K", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) turn_about: Option<PerAxis>,
+    /// Set-points to judge: CSV with the columns t_s, x_mm, y_mm, z_mm.
+    #[arg(value_name = "SETPOINTS.csv")]
+    pub(crate) set_points: PathBuf,
+}
+
+/// Which machine to describe.
+#[derive(Debug, Args)]
+pub(crate) struct MachinesArgs {
+    /// Registered machine, or machine file.
+    pub(crate) name: Option<String>,
+    /// Print the JSON Schema of machine files.
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) schema: bool,
+}
+
+fn methods() -> PossibleValuesParser {
+    PossibleValuesParser::new(
+        METHODS
+            .iter()
+            .map(|method| PossibleValue::new(method.name).help(method.summary)),
+    )
+}
+
+fn all_methods() -> PossibleValuesParser {
+    PossibleValuesParser::new(
+        METHODS
+            .iter()
+            .chain(crate::commands::poses::METHODS)
+            .map(|method| PossibleValue::new(method.name).help(method.summary)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        CommandLine::command().debug_assert();
+    }
+}

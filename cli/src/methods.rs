@@ -1,0 +1,195 @@
+//! The methods by name: the only file that knows which planners there are.
+//!
+//! Everything else speaks to [`MotionPlanner`].
+
+use crate::error::CliError;
+use crate::input::args::TuningArgs;
+use crate::input::filters::{asked, chain};
+use crate::input::setup::Setup;
+use toolglide_fir::{FilterChain, FirInterpolation};
+use toolglide_kinematics::{Limits, MotionPlanner, Vector};
+use toolglide_optimal::{Effort, TimeOptimal};
+use toolglide_reference::ReferencePlanner;
+use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
+
+/// A method of planning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MethodName {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does at corners.
+    pub summary: &'static str,
+}
+
+/// All methods, the default first.
+pub const METHODS: &[MethodName] = &[
+    MethodName {
+        name: "kcs",
+        summary: "the fastest it finds of everything: corners turned, stopped at, many fine ones superposed",
+    },
+    MethodName {
+        name: OPTIMAL,
+        summary: "the fastest motion inside tolerance and limits, planned in windows; kcs where that is faster",
+    },
+    MethodName {
+        name: "kcs-uninterrupted",
+        summary: "acceleration is carried through every corner",
+    },
+    MethodName {
+        name: "kcs-interrupted",
+        summary: "acceleration is zero where a corner begins and ends",
+    },
+    MethodName {
+        name: "kcs-local",
+        summary: "the dissertation's local corners: uninterrupted acceleration, each move as programmed",
+    },
+    MethodName {
+        name: "kcs-global",
+        summary: "the dissertation's global corners: as local, overlapping where moves are short",
+    },
+    MethodName {
+        name: BEZIER,
+        summary: "spline corners for comparison: curvature-optimal quintics at constant speed",
+    },
+    MethodName {
+        name: "fir",
+        summary: "feed pulses through moving averages, overlapping as far as the tolerance allows",
+    },
+    MethodName {
+        name: "fir-p2p",
+        summary: "feed pulses through moving averages, a full stop at the end of every move",
+    },
+    MethodName {
+        name: REFERENCE,
+        summary: "the time-optimal reference, for short programs: minutes for a hundred moves",
+    },
+    MethodName {
+        name: EXACT_STOP,
+        summary: "a full stop at the end of every move",
+    },
+];
+
+/// Time-optimal motion.
+const OPTIMAL: &str = "optimal";
+
+/// The baseline of spline corners.
+const BEZIER: &str = "bezier";
+
+/// The time-optimal reference: so slow that it must be asked for.
+pub(crate) const REFERENCE: &str = "reference";
+
+/// The method that all others are measured by.
+pub(crate) const EXACT_STOP: &str = "exact-stop";
+
+/// What some methods can be told.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tuning {
+    /// The filters of the methods fir and fir-p2p; `None` where the planner chooses.
+    pub(crate) filters: Option<FilterChain>,
+    /// Who asked for them.
+    pub(crate) filters_asked: String,
+    /// How much planning the method optimal may do.
+    pub(crate) effort: Effort,
+}
+
+impl Tuning {
+    /// What the command line and the machine say.
+    pub(crate) fn of(args: &TuningArgs, setup: &Setup) -> Result<Self, CliError> {
+        Ok(Self {
+            filters: chain(args, setup)?,
+            filters_asked: asked(args, setup),
+            effort: Effort::new(args.effort).unwrap_or_default(),
+        })
+    }
+}
+
+/// The planner of a method, at rest at `start`.
+pub(crate) fn planner<const N: usize>(
+    method: &str,
+    start: Vector<N>,
+    limits: Limits<N>,
+    tuning: &Tuning,
+) -> Result<Box<dyn MotionPlanner<N>>, CliError> {
+    if let Some(method) = Method::find(method) {
+        let settings = Settings::new(limits).with_method(method);
+        return Ok(Box::new(KinematicSmoothing::new(start, &settings)));
+    }
+    if let Some(method) = toolglide_fir::Method::find(method) {
+        let mut settings = toolglide_fir::Settings::new(limits).with_method(method);
+        if let Some(chain) = &tuning.filters {
+            settings = settings
+                .with_chain(chain)
+                .map_err(CliError::filters(&tuning.filters_asked))?;
+        }
+        return Ok(Box::new(FirInterpolation::new(start, &settings)));
+    }
+    if method == OPTIMAL {
+        let settings = toolglide_optimal::Settings::new(limits).with_effort(tuning.effort);
+        return Ok(Box::new(TimeOptimal::new(start, &settings)));
+    }
+    if method == BEZIER {
+        return Ok(Box::new(BezierSmoothing::new(start, limits)));
+    }
+    if method == REFERENCE {
+        return Ok(Box::new(ReferencePlanner::new(start, limits)));
+    }
+    let names: Vec<_> = METHODS.iter().map(|method| method.name).collect();
+    Err(CliError::Option {
+        option: "--method",
+        value: format!("\"{method}\""),
+        bound: format!("there are {}", names.join(", ")),
+    })
+}
+
+/// The methods asked for, each once; where none was, all but those that must be asked for.
+pub(crate) fn chosen(asked: &[String]) -> Vec<String> {
+    if asked.is_empty() {
+        return METHODS
+            .iter()
+            .filter(|method| method.name != REFERENCE)
+            .map(|method| method.name.to_owned())
+            .collect();
+    }
+    let mut chosen = Vec::<String>::new();
+    for method in asked {
+        if !chosen.contains(method) {
+            chosen.push(method.clone());
+        }
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_has_a_planner() {
+        let limits = Limits::<2>::uniform(1.0, 1.0, 1.0).unwrap();
+        for method in METHODS {
+            assert!(
+                planner(method.name, Vector::zeros(), limits, &Tuning::default()).is_ok(),
+                "{}",
+                method.name
+            );
+        }
+        assert!(
+            planner("spline", Vector::zeros(), limits, &Tuning::default()).is_err(),
+            "unknown"
+        );
+    }
+
+    #[test]
+    fn a_method_named_twice_is_planned_once() {
+        let asked = ["kcs", "exact-stop", "kcs"].map(str::to_owned);
+        assert_eq!(chosen(&asked), ["kcs", "exact-stop"]);
+    }
+
+    #[test]
+    fn the_reference_must_be_asked_for() {
+        let all = chosen(&[]);
+        assert_eq!(all.len(), METHODS.len() - 1);
+        assert!(!all.contains(&REFERENCE.to_owned()), "{all:?}");
+        assert_eq!(chosen(&[REFERENCE.to_owned()]), [REFERENCE]);
+    }
+}

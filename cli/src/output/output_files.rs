@@ -1,0 +1,118 @@
+//! The files that a run writes: begun before anything is planned, named when all is done.
+
+use crate::error::CliError;
+use crate::input::args::{JobArgs, PlanArgs};
+use crate::output::csv_writer::Destination;
+use crate::output::files::{OutputFile, same_file};
+use crate::plot::Picture;
+use std::io::Write;
+use std::path::Path;
+
+/// A picture to be drawn.
+#[derive(Debug)]
+pub(crate) struct Drawing {
+    picture: Picture,
+    file: OutputFile,
+}
+
+impl Drawing {
+    /// Begins the picture that was asked for, if any.
+    pub(crate) fn begin(plot: Option<&Path>, job: &JobArgs) -> Result<Option<Self>, CliError> {
+        plot.map(|path| {
+            Ok(Self {
+                picture: Picture::of(path)?,
+                file: OutputFile::begin(path, &inputs(job))?,
+            })
+        })
+        .transpose()
+    }
+
+    /// Writes it, given as SVG text.
+    pub(crate) fn write(&mut self, svg: &str) -> Result<(), CliError> {
+        self.picture.write(svg, &mut self.file)
+    }
+
+    /// Gives the complete file its name.
+    pub(crate) fn commit(self) -> Result<(), CliError> {
+        OutputFile::commit([self.file])
+    }
+}
+
+/// Where the set-points of a plan go.
+#[derive(Debug)]
+pub(crate) struct RowsFile {
+    file: Option<OutputFile>,
+    to_stdout: bool,
+}
+
+impl RowsFile {
+    /// What takes the rows; nothing unless they were asked for.
+    pub(crate) fn destination<'a>(&'a mut self, out: &'a mut dyn Write) -> Option<Destination<'a>> {
+        match &mut self.file {
+            Some(file) => {
+                let name = file.path().to_owned();
+                Some(Destination { sink: file, name })
+            }
+            None if self.to_stdout => Some(Destination {
+                sink: out,
+                name: "standard output".into(),
+            }),
+            None => None,
+        }
+    }
+}
+
+/// Set-points and picture of one plan.
+#[derive(Debug)]
+pub(crate) struct PlanFiles {
+    /// The set-points.
+    pub(crate) rows: RowsFile,
+    /// The picture, if one was asked for.
+    pub(crate) drawing: Option<Drawing>,
+}
+
+impl PlanFiles {
+    /// Begins the files of a run, none of which may be another of them.
+    pub(crate) fn begin(args: &PlanArgs) -> Result<Self, CliError> {
+        let to_stdout = args.output.as_deref() == Some(Path::new("-"));
+        if to_stdout && args.job.json {
+            return Err(CliError::Option {
+                option: "--json",
+                value: "with -o -".to_owned(),
+                bound: "only one of them can have standard output".to_owned(),
+            });
+        }
+        let rows = args.output.as_deref().filter(|_| !to_stdout);
+        if let (Some(rows), Some(plot)) = (rows, args.plot.as_deref())
+            && same_file(rows, plot)
+        {
+            return Err(CliError::Option {
+                option: "--plot",
+                value: plot.display().to_string(),
+                bound: "the set-points are written there".to_owned(),
+            });
+        }
+        Ok(Self {
+            rows: RowsFile {
+                file: rows
+                    .map(|path| OutputFile::begin(path, &inputs(&args.job)))
+                    .transpose()?,
+                to_stdout,
+            },
+            drawing: Drawing::begin(args.plot.as_deref(), &args.job)?,
+        })
+    }
+
+    /// Gives the complete files their names. Says whether the rows have standard output to themselves.
+    pub(crate) fn commit(self) -> Result<bool, CliError> {
+        let drawing = self.drawing.map(|drawing| drawing.file);
+        OutputFile::commit(self.rows.file.into_iter().chain(drawing))?;
+        Ok(self.rows.to_stdout)
+    }
+}
+
+/// What a run reads, which must not be written over.
+fn inputs(job: &JobArgs) -> Vec<&Path> {
+    let read = [job.program.as_path(), Path::new(&job.machine)];
+    read.into_iter().chain(job.tool_table.as_deref()).collect()
+}
