@@ -10,9 +10,9 @@ use crate::output::csv_writer::SetPoints;
 use crate::plot::Plot;
 use std::io::BufRead;
 use std::time::{Duration, Instant};
-use toolglide_kinematics::verify::{Judge, Report};
 use toolglide_kinematics::{MotionPlanner, Move, Piece, WindowTally};
 use toolglide_program::AxisMoves;
+use toolglide_verify::{Judge, Report};
 
 /// Moves that are read before any of them is planned.
 const MOVES: usize = 512;

@@ -241,7 +241,6 @@ impl<const N: usize> MotionPlanner<N> for FirInterpolation<N> {
                     serves,
                 });
             }
-            _ => {}
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{STAR, TABLE_5_1, judge, legs, limitless, plan, settings, start_of, table_ac};
 use toolglide_fiveaxis::PoseMethod;
-use toolglide_kinematics::PoseReport;
+use toolglide_verify::PoseReport;
 
 /// A path by a method without axis limits.
 fn planned(rows: &[[f64; 6]], speed: f64, tolerances: [f64; 2], method: PoseMethod) -> PoseReport {

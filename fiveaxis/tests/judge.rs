@@ -4,7 +4,8 @@ mod common;
 
 use common::{Planned, STAR, judge, legs, plan, settings, start_of, table_ac};
 use toolglide_fiveaxis::PoseMethod;
-use toolglide_kinematics::{Axis, AxisLimits, MachineKinematics, PoseLeg, PosePath, PoseReport};
+use toolglide_kinematics::{Axis, AxisLimits, MachineKinematics, PoseLeg, PosePath};
+use toolglide_verify::PoseReport;
 
 const SPEED: f64 = 50.0;
 const TIP: f64 = 0.1;

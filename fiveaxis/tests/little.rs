@@ -8,10 +8,10 @@ use common::{Planned, judge, plan, pose, settings};
 use proptest::prelude::*;
 use toolglide_fiveaxis::{PoseMethod, Resolver, start_of as start_of_moves};
 use toolglide_kinematics::{
-    Feedrate, OrientationTolerance, PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath, PoseReport,
-    Tolerance,
+    Feedrate, OrientationTolerance, PoseEnd, PoseFeed, PoseLeg, PoseMove, PosePath, Tolerance,
 };
 use toolglide_machines::find;
+use toolglide_verify::PoseReport;
 
 const METHODS: [PoseMethod; 3] = [
     PoseMethod::DwellControlled,

@@ -9,12 +9,13 @@ use common::{Planned, judge, plan, settings};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use toolglide_fiveaxis::{FiveAxisError, PoseMethod, PoseSettings, Resolver};
-use toolglide_kinematics::verify::pose::PoseSetPointJudge;
 use toolglide_kinematics::{
     AxisVector, Feedrate, KinematicsError, MachineKinematics, OrientationTolerance, PoseEnd,
-    PoseFeed, PoseLeg, PoseMove, PosePath, PosePiece, PoseReport, SamplePeriod, Tolerance, Vector,
+    PoseFeed, PoseLeg, PoseMove, PosePath, PosePiece, SamplePeriod, Tolerance, Vector,
 };
 use toolglide_machines::find;
+use toolglide_verify::PoseReport;
+use toolglide_verify::PoseSetPointJudge;
 
 const METHODS: [PoseMethod; 3] = [
     PoseMethod::PointToPoint,

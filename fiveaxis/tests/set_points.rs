@@ -6,12 +6,13 @@ mod common;
 
 use common::{FAN, Planned, STAR, judge, legs, plan, pose, settings, start_of};
 use toolglide_fiveaxis::{PoseMethod, PoseSampler};
-use toolglide_kinematics::verify::pose::PoseSetPointJudge;
 use toolglide_kinematics::{
     Axis, AxisVector, Feedrate, MachineKinematics, OrientationTolerance, PoseFeed, PoseLeg,
-    PosePath, PoseReport, SamplePeriod, Tolerance,
+    PosePath, SamplePeriod, Tolerance,
 };
 use toolglide_machines::find;
+use toolglide_verify::PoseReport;
+use toolglide_verify::PoseSetPointJudge;
 
 /// A machine of the house whose axes have no ends.
 fn endless(name: &str) -> (Box<dyn MachineKinematics>, Vec<Axis>) {

@@ -6,7 +6,7 @@
 use crate::axis_vector::{AxisVector, MOST_AXES, Solutions};
 use crate::limits::AxisLimits;
 use crate::numeric::{ANGLE_SLACK, LENGTH_SLACK};
-use crate::pose::ToolPose;
+use crate::pose::tool_pose::ToolPose;
 use crate::sample::SamplePeriod;
 use crate::tolerance::Tolerance;
 use crate::vector::Vector;

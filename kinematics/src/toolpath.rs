@@ -10,7 +10,6 @@ use crate::vector::{Vector, check};
 
 /// Where a move leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Path<const N: usize> {
     /// A straight line from wherever the last move ended.
     Line {

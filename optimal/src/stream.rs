@@ -88,7 +88,6 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
                 }));
                 return;
             }
-            _ => {}
         }
         if next.stops() {
             self.rest(None);

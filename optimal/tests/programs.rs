@@ -14,9 +14,9 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 use toolglide_kinematics::{
     Arc, AxisLimits, Feedrate, Limits, Move, Tolerance, Toolpath, Trajectory, Vector, WindowTally,
-    verify,
 };
 use toolglide_optimal::{SequentialSolver, WindowSolver};
+use toolglide_verify::verify;
 
 /// A stroke: a direction, a length, and what is special about it.
 type Stroke = (Vec<f64>, f64, u8);

@@ -13,9 +13,10 @@ use clarabel::Conic;
 use common::{Failing, run};
 use toolglide_kinematics::{
     AxisLimits, Feedrate, Limits, MotionPlanner, Move, Plan, Tolerance, Toolpath, Trajectory,
-    Vector, verify,
+    Vector,
 };
 use toolglide_optimal::{SequentialSolver, Settings, TimeOptimal, plan_with};
+use toolglide_verify::verify;
 
 fn judged<const N: usize>(points: &[Vector<N>], tolerance: f64, limits: Limits<N>) -> Plan<N> {
     let path = Toolpath::from_points(

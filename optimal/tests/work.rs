@@ -9,9 +9,9 @@
 
 use toolglide_kinematics::{
     Arc, Feedrate, Limits, MotionPlanner, Move, Plan, Tolerance, Toolpath, Trajectory, Vector,
-    verify,
 };
 use toolglide_optimal::{Settings, TimeOptimal};
+use toolglide_verify::verify;
 
 /// Work that may be spent before motion has earned it, and what a second of it earns in three axes.
 const STORE: f64 = 4e5;

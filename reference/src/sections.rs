@@ -73,7 +73,6 @@ impl<const N: usize> Sections<N> {
                     serves: index,
                 });
             }
-            _ => {}
         }
         let course = if next.stops() { self.cut() } else { None };
         Ok([course, rest])

@@ -4,8 +4,9 @@
 
 mod common;
 
-use toolglide_kinematics::{Feedrate, Limits, Tolerance, Vector, verify};
+use toolglide_kinematics::{Feedrate, Limits, Tolerance, Vector};
 use toolglide_reference::{Course, Settings, lower_bound, optimum};
+use toolglide_verify::verify;
 
 /// Relative precision of 100 intervals.
 const HUNDRED: f64 = 3e-4;

@@ -4,10 +4,9 @@
 
 mod common;
 
-use toolglide_kinematics::{
-    Arc, Feedrate, Limits, Move, Tolerance, Toolpath, Trajectory, Vector, verify,
-};
+use toolglide_kinematics::{Arc, Feedrate, Limits, Move, Tolerance, Toolpath, Trajectory, Vector};
 use toolglide_reference::{LONGEST, plan};
+use toolglide_verify::verify;
 
 fn judged(path: &Toolpath<2>, limits: Limits<2>) -> f64 {
     let motion = plan(path, limits).unwrap();

@@ -216,7 +216,6 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
                     end: self.intake.end(),
                 });
             }
-            _ => {}
         }
         Ok(())
     }

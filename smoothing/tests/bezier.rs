@@ -6,10 +6,11 @@
 
 use proptest::prelude::*;
 use toolglide_kinematics::{
-    Arc, AxisLimits, Feedrate, Limits, MotionPlanner, Move, Piece, Report, Tolerance, Toolpath,
-    Trajectory, Vector, verify,
+    Arc, AxisLimits, Feedrate, Limits, MotionPlanner, Move, Piece, Tolerance, Toolpath, Trajectory,
+    Vector,
 };
 use toolglide_smoothing::{BezierSmoothing, Settings, plan, plan_bezier};
+use toolglide_verify::{Report, verify};
 
 /// Share of the tolerance that a corner with long legs must use.
 const USED: f64 = 0.98;

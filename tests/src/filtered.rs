@@ -5,7 +5,8 @@
 use crate::course::{Course, Numbers, limits};
 use proptest::prelude::*;
 use toolglide_fir::{FilterChain, Method, Settings, plan};
-use toolglide_kinematics::{Plan, Trajectory, Vector, verify, verify_set_points};
+use toolglide_kinematics::{Plan, Trajectory, Vector};
+use toolglide_verify::{verify, verify_set_points};
 
 /// Time constants that are tried; none where the planner chooses.
 const CHAINS: [&[f64]; 4] = [&[], &[0.05, 0.03], &[0.02, 0.02], &[0.06, 0.04, 0.015]];

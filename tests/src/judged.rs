@@ -5,8 +5,9 @@
 use crate::bounds::NEVER_SLOWER;
 use crate::course::{Course, Numbers, limits};
 use proptest::prelude::*;
-use toolglide_kinematics::{Plan, Trajectory, verify};
+use toolglide_kinematics::{Plan, Trajectory};
 use toolglide_smoothing::{Method, Settings, plan};
+use toolglide_verify::verify;
 
 /// Windows tried: the shortest, the shortest that looks ahead, a short one, and the default.
 const WINDOWS: [usize; 4] = [1, 2, 5, 512];

@@ -3,8 +3,9 @@
 //! Not here: what the report must say.
 
 use std::time::{Duration, Instant};
-use toolglide_kinematics::{Judge, Limits, MotionPlanner, Move, Report, Vector};
+use toolglide_kinematics::{Limits, MotionPlanner, Move, Vector};
 use toolglide_smoothing::{KinematicSmoothing, Settings};
+use toolglide_verify::{Judge, Report};
 
 /// What came of a stream of moves.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! Rounding of large coordinates is no violation: lines, arcs and helices up to a kilometre from zero, by every method.
 
-use toolglide_kinematics::{Limits, Toolpath, Trajectory, verify};
+use toolglide_kinematics::{Limits, Toolpath, Trajectory};
 use toolglide_tests::course::{Course, Lead, arc, go};
+use toolglide_verify::verify;
 
 /// Lines, half circles of every size in a row, and a helix, from a point on.
 fn course(far: f64) -> Course<3> {

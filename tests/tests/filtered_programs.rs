@@ -5,9 +5,10 @@
 use std::f64::consts::TAU;
 use toolglide_fir::{FilterChain, FirInterpolation, Method, Settings, plan};
 use toolglide_kinematics::{
-    Feedrate, Judge, Limits, MotionPlanner, Tolerance, Toolpath, Trajectory, Vector, verify,
+    Feedrate, Limits, MotionPlanner, Tolerance, Toolpath, Trajectory, Vector,
 };
 use toolglide_tests::corpus;
+use toolglide_verify::{Judge, verify};
 
 #[test]
 fn programs_of_arcs_are_followed_within_the_tolerance() {

@@ -6,9 +6,10 @@ use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{FiveAxisError, PoseMethod, PosePlanner, PoseSettings};
 use toolglide_kinematics::{
     AxisVector, Feedrate, KinematicsError, MachineKinematics, OrientationTolerance, PoseFeed,
-    PoseJudge, PoseLeg, PoseReport, Tolerance, ToolPose, Vector,
+    PoseLeg, Tolerance, ToolPose, Vector,
 };
 use toolglide_machines::{MachineConfig, find, models};
+use toolglide_verify::{PoseJudge, PoseReport};
 
 /// A path around a block: out, over it, past upright, and back; a tip and a lean each.
 const AROUND: [[f64; 5]; 9] = [

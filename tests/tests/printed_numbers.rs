@@ -3,12 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
-use toolglide_kinematics::{Limits, Trajectory, verify};
+use toolglide_kinematics::{Limits, Trajectory};
 use toolglide_smoothing::{Method, Settings, plan};
 use toolglide_tests::bounds::PRINTED;
 use toolglide_tests::corpus;
 use toolglide_tests::course::Course;
 use toolglide_tests::stream::plan_and_judge;
+use toolglide_verify::verify;
 
 fn close(duration: f64, printed: f64) {
     assert!(

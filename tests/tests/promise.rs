@@ -8,11 +8,12 @@
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
-use toolglide_kinematics::{Trajectory, verify};
+use toolglide_kinematics::Trajectory;
 use toolglide_smoothing::{Method, Settings, plan};
 use toolglide_tests::bounds::SLOWER;
 use toolglide_tests::course::{Course, Numbers, limits};
 use toolglide_tests::feeds::{AXES, programs};
+use toolglide_verify::verify;
 
 /// Programs that are tried, and in proportion more when the environment asks proptest for more than its 256.
 const PROGRAMS: u32 = 500;

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use proptest::prelude::*;
-use toolglide_kinematics::{Feedrate, Limits, Move, Plan, Tolerance, Toolpath, Vector, verify};
+use toolglide_kinematics::{Feedrate, Limits, Move, Plan, Tolerance, Toolpath, Vector};
 use toolglide_reference::{Section, Settings, hold, part, score, sections};
 use toolglide_smoothing::Method;
+use toolglide_verify::verify;
 
 /// Intervals of time of an optimum: coarse, so that plans are often faster.
 const INTERVALS: usize = 24;

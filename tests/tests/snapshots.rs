@@ -6,9 +6,10 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use std::fmt::Write;
-use toolglide_kinematics::{Plan, Sample, Toolpath, Trajectory, verify};
+use toolglide_kinematics::{Plan, Sample, Toolpath, Trajectory};
 use toolglide_smoothing::{Settings, plan};
 use toolglide_tests::course::{Course, Lead, Numbers, arc, go, limits, stop};
+use toolglide_verify::verify;
 
 /// Rows at equal times.
 const ROWS: u32 = 64;

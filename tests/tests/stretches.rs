@@ -4,9 +4,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
-use toolglide_kinematics::{MotionPlanner, Plan, Trajectory, verify};
+use toolglide_kinematics::{MotionPlanner, Plan, Trajectory};
 use toolglide_smoothing::{KinematicSmoothing, Method, Settings, plan};
 use toolglide_tests::course::{Course, limits};
+use toolglide_verify::verify;
 
 const FEEDRATE: f64 = 100.0;
 const LIMITS: [[f64; 3]; 2] = [[500.0, 2_000.0, 5e4]; 2];

@@ -17,7 +17,7 @@ use crate::pipeline::Lane;
 use crate::plot::{Caption, Feeds};
 use std::io::Write;
 use toolglide_kinematics::Move;
-use toolglide_kinematics::verify::Judge;
+use toolglide_verify::Judge;
 
 /// Runs the command.
 pub(crate) fn compare(

@@ -18,8 +18,8 @@ use crate::plot::{Caption, Plot};
 use std::io::{BufRead, Write};
 use std::path::Path;
 use toolglide_kinematics::Move;
-use toolglide_kinematics::verify::Judge;
 use toolglide_program::{Program, Settings};
+use toolglide_verify::Judge;
 
 /// Runs the command.
 pub(crate) fn plan(

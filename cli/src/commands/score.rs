@@ -16,9 +16,10 @@ use crate::output::report::show;
 use crate::output::score_report::{Loss, MethodStanding, Sample, Standing, Sums};
 use crate::plot::{Caption, Contrast};
 use std::io::Write;
-use toolglide_kinematics::{Limits, Move, Plan, Toolpath, Trajectory, verify};
+use toolglide_kinematics::{Limits, Move, Plan, Toolpath, Trajectory};
 use toolglide_reference::{Course, Section, Settings, Window, Windows, certify, hold, part};
 use toolglide_reference::{Score, Sections};
+use toolglide_verify::verify;
 
 /// Programs that a certificate may take: it closes the gap of most corners to a thousandth.
 const CERTIFICATE: usize = 200;

@@ -20,8 +20,8 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
 use toolglide_fir::{Mode, Resonator};
-use toolglide_kinematics::verify::Judge;
 use toolglide_kinematics::{Move, Piece};
+use toolglide_verify::Judge;
 
 /// Frequencies of a spectrum.
 const FREQUENCIES: u32 = 400;

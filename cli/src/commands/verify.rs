@@ -19,8 +19,8 @@ use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use toolglide_kinematics::verify::{SetPointJudge, VerifyError};
 use toolglide_kinematics::{Move, Vector};
+use toolglide_verify::{SetPointJudge, VerifyError};
 
 /// Moves that are expected beyond what the motion can reach before the next set-point: a motion
 /// within a wide tolerance may pass hundreds of short moves at once.

@@ -168,7 +168,6 @@ fn on_plane(next: &Move<3>) -> Option<Move<2>> {
                 .round();
             Move::arc(about(whole(more))?, next.feedrate(), next.tolerance())
         }
-        _ => return None,
     };
     if next.stops() {
         same = same.with_exact_stop();

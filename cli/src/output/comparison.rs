@@ -8,7 +8,7 @@ use crate::output::summary::worst_first;
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Duration;
-use toolglide_kinematics::verify::{Peak, Report};
+use toolglide_verify::{Peak, Report};
 
 /// Several methods on one program, as JSON names it.
 #[derive(Clone, Debug, Serialize)]

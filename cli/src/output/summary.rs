@@ -6,8 +6,8 @@ use crate::input::setup::Setup;
 use crate::output::report::{Shown, is_zero, quoted, verdict};
 use serde::Serialize;
 use std::fmt::Write;
-use toolglide_kinematics::verify::{Peak, Report, Violation};
 use toolglide_kinematics::{AxisKind, WindowTally};
+use toolglide_verify::{Peak, Report, Violation};
 
 /// What came out, as JSON names it.
 #[derive(Clone, Debug, Serialize)]

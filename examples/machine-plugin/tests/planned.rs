@@ -4,9 +4,9 @@ use nutating_table as _; // without this line the machine is not linked, and not
 use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{PoseMethod, PosePlanner, PoseSettings};
 use toolglide_kinematics::{
-    AxisVector, Feedrate, OrientationTolerance, PoseFeed, PoseJudge, PoseLeg, Tolerance, ToolPose,
-    Vector,
+    AxisVector, Feedrate, OrientationTolerance, PoseFeed, PoseLeg, Tolerance, ToolPose, Vector,
 };
+use toolglide_verify::PoseJudge;
 
 #[test]
 fn a_rim_is_planned_on_the_machine_by_name() {

@@ -15,8 +15,8 @@ use crate::pose::tool::ToolStretch;
 use crate::settings::{PoseMethod, PoseSettings};
 use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
-use toolglide_kinematics::verify::pose::keeps_axis_limits;
 use toolglide_kinematics::{Axis, MachineKinematics, PosePiece};
+use toolglide_verify::keeps_axis_limits;
 
 /// How often what is left of a row is divided at most, so that the work of a row is bounded.
 const DIVISIONS: u32 = 4;

@@ -9,9 +9,10 @@ use toolglide_fir::FilterChain;
 use toolglide_fiveaxis::{PoseMethod, PosePlanner, PoseSettings, Slowdown};
 use toolglide_kinematics::{
     Axis, AxisLimits, AxisVector, Feedrate, MachineKinematics, OrientationTolerance, PoseFeed,
-    PoseJudge, PoseLeg, PosePiece, PoseReport, Tolerance, ToolPose, Vector,
+    PoseLeg, PosePiece, Tolerance, ToolPose, Vector,
 };
 use toolglide_machines::find;
+use toolglide_verify::{PoseJudge, PoseReport};
 
 /// Table 5.1: tips and orientations of three poses.
 pub(crate) const TABLE_5_1: [[f64; 6]; 3] = [

@@ -102,7 +102,6 @@ impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
                 serves: Serves::one(index),
                 end: self.intake.end(),
             }),
-            _ => {}
         }
         Ok(())
     }

@@ -13,8 +13,8 @@ use crate::output::report::show;
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;
-use toolglide_kinematics::verify::pose::PoseSetPointJudge;
 use toolglide_kinematics::{AxisKind, AxisVector};
+use toolglide_verify::PoseSetPointJudge;
 
 /// Runs the command.
 pub(crate) fn verify(

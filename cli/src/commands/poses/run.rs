@@ -19,7 +19,8 @@ use std::time::{Duration, Instant};
 use toolglide_fiveaxis::{
     FiveAxisError, PoseMethod, PosePlanner, PoseSampler, PoseSettings, PoseTick,
 };
-use toolglide_kinematics::{PoseFeed, PoseJudge, PosePiece};
+use toolglide_kinematics::{PoseFeed, PosePiece};
+use toolglide_verify::PoseJudge;
 
 /// The method by its name.
 fn method(name: &str, way_points: u32) -> Result<PoseMethod, CliError> {

@@ -8,7 +8,8 @@ use crate::output::summary::{clock, every};
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_fiveaxis::Slowdown;
-use toolglide_kinematics::{AxisKind, PoseReport};
+use toolglide_kinematics::AxisKind;
+use toolglide_verify::PoseReport;
 
 /// How many slowed moves are named.
 const NAMED: usize = 5;

@@ -7,9 +7,9 @@ use crate::methods::{Tuning, planner};
 use crate::output::summary::worst_first;
 use crate::pipeline::{Lane, Moves};
 use toolglide_fir::FilterChain;
-use toolglide_kinematics::verify::Judge;
 use toolglide_kinematics::{Limits, Tolerance, Vector};
 use toolglide_program::{Program, Settings};
+use toolglide_verify::Judge;
 
 /// Largest velocity of every axis, mm/s: beyond what any of the programs asks for.
 const VELOCITY: f64 = 500.0;

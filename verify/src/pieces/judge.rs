@@ -1,0 +1,268 @@
+//! The judge of planned pieces, one after the other, with bounded memory.
+//!
+//! Source: the meaning of [`toolglide_kinematics::Tolerance`], and the limits of section 2.2 at every instant. Not
+//! here: any formula of any planner, and the record of corners and stops.
+
+use crate::path::bernstein::Cubic;
+use crate::path::deviation;
+use crate::path::leg::length_slack;
+use crate::path::route::Route;
+use crate::pieces::dynamics::{Stretch, judge_continuity, judge_limits, judge_speed, moving_axis};
+use crate::pieces::move_progress::Record;
+use crate::report::{Place, Report};
+use crate::violation::Violation;
+use toolglide_kinematics::Limits;
+use toolglide_kinematics::Move;
+use toolglide_kinematics::Sample;
+use toolglide_kinematics::ToolpathError;
+use toolglide_kinematics::Vector;
+use toolglide_kinematics::{Piece, Serves};
+
+/// Judges a motion piece by piece while it is planned.
+///
+/// Moves are expected in path order, any number ahead of the motion; those that the motion has gone
+/// past are forgotten. A piece is compared with the moves that it says it serves, which must go
+/// forward and leave none out.
+///
+/// # Examples
+/// ```
+/// use toolglide_kinematics::verify::Judge;
+/// use toolglide_kinematics::{Feedrate, Limits, Move, Tolerance, Vector};
+/// let limits = Limits::<2>::uniform(500.0, 2_000.0, 5e4)?;
+/// let mut judge = Judge::new(Vector::<2>::zeros(), limits);
+/// judge.expect(&Move::line_to(
+///     Vector::<2>::new(10.0, 0.0), Feedrate::new(100.0)?, Tolerance::new(0.01)?)?)?;
+/// let report = judge.finish();
+/// assert!(!report.passes(), "no motion came at all");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Judge<const N: usize> {
+    limits: Limits<N>,
+    route: Route<N>,
+    record: Record,
+    report: Report<N>,
+    state: Sample<N>,
+    /// How long the piece before lasted.
+    lasted: f64,
+    time: f64,
+    /// What the sum of durations has lost to rounding.
+    compensation: f64,
+    claimed: Option<Serves>,
+}
+
+impl<const N: usize> Judge<N> {
+    /// A judge of motion from rest at `start`.
+    #[must_use]
+    pub fn new(start: Vector<N>, limits: Limits<N>) -> Self {
+        Self {
+            limits,
+            route: Route::new(start),
+            record: Record::default(),
+            report: Report::new(),
+            state: Sample::at_rest(start),
+            lasted: f64::INFINITY,
+            time: 0.0,
+            compensation: 0.0,
+            claimed: None,
+        }
+    }
+
+    /// Takes the next move of the path.
+    ///
+    /// # Errors
+    /// [`ToolpathError`] when it does not connect; the path stays as it was.
+    pub fn expect(&mut self, next: &Move<N>) -> Result<(), ToolpathError> {
+        self.route.expect(next)
+    }
+
+    /// Judges the next piece of the motion. The moves that it serves have been expected before.
+    pub fn observe(&mut self, piece: &Piece<N>) {
+        let stretch = Stretch::new(piece, self.time);
+        let (first, last) = self.claim(piece.serves());
+        let place = self.place(first);
+        self.report.observed += 1;
+        let curve = Cubic::of(&stretch.start, piece);
+        if !(stretch.is_motion() && curve.is_measurable()) {
+            let time = self.time;
+            self.report.add(Violation::NotFinite { time, place });
+            return;
+        }
+        if self.report.observed == 1 {
+            self.judge_start(&stretch.start);
+            self.state = stretch.start;
+        }
+        // Near zero at the end of a long move a position still has the rounding of its start.
+        let slacks = self.route.range(first, last).map(|leg| leg.slack);
+        let room = slacks.fold(0.0, f64::max);
+        let before = &self.state;
+        let known = (room, self.lasted);
+        judge_continuity(
+            &mut self.report,
+            &self.limits,
+            before,
+            &stretch,
+            known,
+            place,
+        );
+        self.lasted = stretch.duration;
+        judge_limits(&mut self.report, &self.limits, &stretch, place);
+        let feedrates = self.route.range(first, last).map(|leg| leg.feedrate);
+        let feedrate = feedrates.fold(0.0, f64::max);
+        judge_speed(&mut self.report, &stretch, feedrate, place);
+        if self.route.get(first).is_some() {
+            self.judge_deviation(&stretch, &curve, first, last);
+            self.record.pass(
+                &mut self.route,
+                &self.report,
+                &self.limits,
+                &stretch,
+                &curve,
+                (first, last),
+            );
+        }
+        self.advance(stretch.duration);
+        self.state = Sample {
+            position: stretch.stated_end,
+            ..stretch.end
+        };
+    }
+
+    /// How many moves the judge still holds: those ahead of the motion, and at most a few behind.
+    #[must_use]
+    pub fn moves_held(&self) -> u32 {
+        self.route.len() - self.route.base()
+    }
+
+    /// The report, once the motion is over.
+    ///
+    /// The motion must have ended at rest at the end of the path.
+    #[must_use]
+    pub fn finish(mut self) -> Report<N> {
+        let moves = self.route.len();
+        let time = self.time;
+        let served = self
+            .claimed
+            .map_or(0, |claimed| claimed.last.saturating_add(1));
+        self.skip(served, moves);
+        while self.route.base() < moves {
+            self.record.close(&mut self.route, &mut self.report, time);
+        }
+        let place = Place {
+            mv: moves.saturating_sub(1),
+            line: self.record.last_line,
+        };
+        let distance = (self.state.position - self.route.end()).norm();
+        if distance > length_slack(self.route.end().amax()) {
+            self.report.add(Violation::EndsElsewhere {
+                distance,
+                time,
+                place,
+            });
+        }
+        if let Some(axis) = moving_axis(&self.state, &self.limits, time) {
+            self.report.add(Violation::EndsMoving { axis, time, place });
+        }
+        self.report.cycle_time = time;
+        self.report.path_length = self.route.length;
+        self.report.moves = moves;
+        self.report
+    }
+
+    /// The moves to judge a piece by, once its claim has been checked; moves behind are closed.
+    fn claim(&mut self, serves: Serves) -> (u32, u32) {
+        let Serves { first, last } = serves;
+        let known = self.route.len();
+        let before = self.claimed;
+        let next = before.map_or(0, |before| before.last.saturating_add(1));
+        let backwards = before.is_some_and(|before| first < before.first || last < before.last);
+        if first > last || last >= known || backwards {
+            self.report.add(Violation::MovesOutOfOrder {
+                first,
+                last,
+                time: self.time,
+            });
+        }
+        let newest = known.saturating_sub(1);
+        let earliest = before.map_or(0, |before| before.first);
+        let first = first.clamp(earliest.min(newest), newest);
+        let last = last.clamp(first.max(next.saturating_sub(1)).min(newest), newest);
+        self.skip(next, first);
+        self.claimed = Some(Serves { first, last });
+        // The corner before the first move served, and moves of no length before it, still matter.
+        let mut keep = first.saturating_sub(1);
+        while keep > self.route.base() && self.route.get(keep).is_some_and(|leg| leg.is_empty()) {
+            keep -= 1;
+        }
+        while self.route.base() < keep {
+            self.record
+                .close(&mut self.route, &mut self.report, self.time);
+        }
+        (first, last)
+    }
+
+    /// Reports moves that no piece serves, unless there is nothing to do on them.
+    fn skip(&mut self, from: u32, to: u32) {
+        for mv in from..to {
+            if let Some(leg) = self.route.get(mv)
+                && !leg.is_empty()
+            {
+                self.report.add(Violation::MoveSkipped {
+                    time: self.time,
+                    place: leg.place,
+                });
+            }
+        }
+    }
+
+    fn place(&self, mv: u32) -> Place {
+        self.route
+            .get(mv)
+            .map_or(Place { mv, line: 0 }, |leg| leg.place)
+    }
+
+    fn judge_start(&mut self, start: &Sample<N>) {
+        let distance = (start.position - self.state.position).norm();
+        if distance > length_slack(start.position.amax()) {
+            self.report.add(Violation::StartsElsewhere { distance });
+        }
+        if let Some(axis) = moving_axis(start, &self.limits, 0.0) {
+            self.report.add(Violation::StartsMoving { axis });
+        }
+    }
+
+    fn judge_deviation(&mut self, stretch: &Stretch<N>, curve: &Cubic<N>, first: u32, last: u32) {
+        let known = [
+            self.report.deviation.value,
+            self.report.deviation_ratio.value,
+        ];
+        let found = deviation::largest(&self.route, curve, first, last, known);
+        let [distance, share] = found.attained;
+        let when = |at: f64| stretch.begin + at * stretch.duration;
+        let place = self.place(distance.mv);
+        self.report
+            .deviation
+            .raise(found.bounds[0], when(distance.at), place);
+        let (time, place) = (when(share.at), self.place(share.mv));
+        self.report
+            .deviation_ratio
+            .raise(found.bounds[1], time, place);
+        if found.bounds[1] > 1.0
+            && let Some(leg) = self.route.get(share.mv)
+        {
+            self.report.add(Violation::Deviation {
+                value: found.bounds[1] * leg.allowed,
+                tolerance: leg.tolerance,
+                time,
+                place,
+            });
+        }
+    }
+
+    fn advance(&mut self, duration: f64) {
+        let step = duration - self.compensation;
+        let sum = self.time + step;
+        self.compensation = (sum - self.time) - step;
+        self.time = sum;
+    }
+}
