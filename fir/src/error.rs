@@ -16,7 +16,7 @@ pub enum FirError {
         /// What was given.
         value: f64,
     },
-    /// A chain has at least one filter and at most [`MOST_FILTERS`](crate::MOST_FILTERS).
+    /// A chain has at least one filter and at most [`MAX_FILTERS`](crate::MAX_FILTERS).
     #[error("a chain has 1 to {most} filters, but {given} were given")]
     FilterCount {
         /// How many were given.

@@ -18,7 +18,7 @@ mod sweep;
 mod ticks;
 
 pub use error::FirError;
-pub use filter::chain::{FilterChain, LONGEST_TIME_CONSTANT, MOST_FILTERS, SHORTEST_TIME_CONSTANT};
+pub use filter::chain::{FilterChain, LONGEST_TIME_CONSTANT, MAX_FILTERS, SHORTEST_TIME_CONSTANT};
 pub use filter::mode::Mode;
 pub use filter::resonator::Resonator;
 pub use filter::train::PulseTrain;

@@ -4,16 +4,16 @@
 
 use crate::chords::{Chords, bulge_of};
 use crate::lookahead::LookAhead;
-use crate::lookahead::arc_feed::Bend;
+use crate::lookahead::arc_feed::ArcFeed;
 use crate::lookahead::command::Command;
 use crate::pulse::Pulse;
-use crate::segment_merger::{Leg, MERGE_SHARE, Merger, Vertex};
+use crate::segment_merger::{MERGE_SHARE, Segment, SegmentMerger, Vertex};
 use crate::settings::{Method, Settings};
 use crate::sweep::Sweep;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{
-    Arc, Intake, Limits, MotionPlanner, Move, Path, Piece, Plan, PlanError, Serves, Toolpath,
-    Vector, largest_multiple,
+    Arc, Limits, MotionPlanner, Move, MoveRange, Path, PathCursor, Piece, Plan, PlanError,
+    Toolpath, Vector, largest_multiple,
 };
 
 /// Room for commands that wait to become motion.
@@ -48,8 +48,8 @@ pub struct FirInterpolation<const N: usize> {
     chosen: bool,
     /// Programmed feedrate since the motion was last at rest for other time constants.
     class: f64,
-    intake: Intake<N>,
-    merger: Merger<N>,
+    intake: PathCursor<N>,
+    merger: SegmentMerger<N>,
     arc: Option<ArcUnderWay<N>>,
     look: LookAhead<N>,
     sweep: Sweep<N>,
@@ -63,7 +63,7 @@ struct ArcUnderWay<const N: usize> {
     programmed: f64,
     feedrate: f64,
     tolerance: f64,
-    serves: Serves,
+    serves: MoveRange,
     stops: bool,
 }
 
@@ -77,8 +77,8 @@ impl<const N: usize> FirInterpolation<N> {
             method: settings.method,
             chosen: settings.chain.is_none(),
             class: settings.limits.velocity().max(),
-            intake: Intake::new(start),
-            merger: Merger::new(start),
+            intake: PathCursor::new(start),
+            merger: SegmentMerger::new(start),
             arc: None,
             sweep: Sweep::new(start, look.chain().clone(), COMMANDS),
             look,
@@ -124,7 +124,7 @@ impl<const N: usize> FirInterpolation<N> {
         self.look.push(pulse, &mut |command| sweep.push(command));
     }
 
-    fn leg(&mut self, from: Vector<N>, leg: &Leg<N>) {
+    fn leg(&mut self, from: Vector<N>, leg: &Segment<N>) {
         self.choose(leg.feedrate);
         let tolerance = LINE_SHARE * leg.room;
         let mut pulse = Pulse::between((from, leg.end), leg.feedrate, tolerance, leg.serves);
@@ -134,7 +134,7 @@ impl<const N: usize> FirInterpolation<N> {
     }
 
     /// The end of a straight stretch that strays from the path by `bulge`.
-    fn vertex(&mut self, point: Vector<N>, bulge: f64, step: &Move<N>, serves: Serves) {
+    fn vertex(&mut self, point: Vector<N>, bulge: f64, step: &Move<N>, serves: MoveRange) {
         let from = self.merger.anchor();
         let leg = self.merger.push(Vertex {
             point,
@@ -148,14 +148,14 @@ impl<const N: usize> FirInterpolation<N> {
         }
     }
 
-    fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, serves: Serves) {
+    fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, serves: MoveRange) {
         self.flush();
         let programmed = step.feedrate().speed();
         let mut feedrate = programmed;
         self.choose(feedrate);
         let tolerance = ARC_SHARE * step.tolerance().length();
         let chords = Chords::new(*arc, tolerance);
-        let bend = Bend::new(arc, &chords, tolerance);
+        let bend = ArcFeed::new(arc, &chords, tolerance);
         if feedrate > self.limits.velocity().min() {
             feedrate = feedrate.min(chords.largest_feed(self.limits.velocity()));
         }
@@ -215,7 +215,7 @@ impl<const N: usize> MotionPlanner<N> for FirInterpolation<N> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
         let index = self.intake.take(next)?;
         while self.advance_arc() {}
-        let serves = Serves::one(index);
+        let serves = MoveRange::one(index);
         match next.path() {
             Path::Line { end } => {
                 self.vertex(*end, 0.0, next, serves);

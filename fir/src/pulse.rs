@@ -3,7 +3,7 @@
 //! Source: section 4.2, where a block is a rectangular pulse; arcs are sequences of chords here. Not
 //! here: its filtered motion.
 
-use toolglide_kinematics::{Serves, Vector};
+use toolglide_kinematics::{MoveRange, Vector};
 
 /// Share of the largest feedrate of an arc that is nearly all of it.
 pub(crate) const NEARLY: f64 = 0.9;
@@ -31,7 +31,7 @@ pub(crate) struct Pulse<const N: usize> {
     pub(crate) smooth: bool,
     /// Whether the path turns at its end by no more than the arc does between its chords.
     pub(crate) even: bool,
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
     /// Feedrate that is commanded.
     pub(crate) feed: f64,
     /// Dwell before it, s; set once it is handed out.
@@ -56,7 +56,7 @@ impl<const N: usize> Pulse<N> {
         (from, to): (Vector<N>, Vector<N>),
         feedrate: f64,
         tolerance: f64,
-        serves: Serves,
+        serves: MoveRange,
     ) -> Self {
         let span = to - from;
         let length = span.norm();

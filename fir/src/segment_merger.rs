@@ -6,14 +6,14 @@
 //! left of the tolerance. Not here: pulses.
 
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
-use toolglide_kinematics::{Serves, Vector};
+use toolglide_kinematics::{MoveRange, Vector};
 
 /// Share of the tolerance that merging may use. Feedrate on a curve goes with the root of what is left,
 /// the time to plan with the square of how many legs are in the window.
 pub(crate) const MERGE_SHARE: f64 = 0.3;
 
 /// Most moves merged into one: bounds memory and the work a move.
-const MOST_MERGED: usize = 128;
+const MAX_MERGED: usize = 128;
 
 /// Length of moves that may be slowed to the feedrate of those they are merged with, as a share of the
 /// tolerance: less than a micrometre where parts are machined.
@@ -27,22 +27,22 @@ pub(crate) struct Vertex<const N: usize> {
     pub(crate) bulge: f64,
     pub(crate) feedrate: f64,
     pub(crate) tolerance: f64,
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
 }
 
 /// A straight stretch that stands for a run of moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Leg<const N: usize> {
+pub(crate) struct Segment<const N: usize> {
     pub(crate) end: Vector<N>,
     pub(crate) feedrate: f64,
     /// What is left of the tolerance.
     pub(crate) room: f64,
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
 }
 
 /// Merges vertices into legs.
 #[derive(Clone, Debug)]
-pub(crate) struct Merger<const N: usize> {
+pub(crate) struct SegmentMerger<const N: usize> {
     anchor: Vector<N>,
     run: Vec<Vertex<N>>,
     /// Of the run: least tolerance, lowest and highest feedrate, largest bulge, largest distance from
@@ -53,14 +53,14 @@ pub(crate) struct Merger<const N: usize> {
     bulge: f64,
     deviation: f64,
     /// Moves that led nowhere and wait for a leg to serve them; their stray and tolerance.
-    carried: Option<(Serves, f64, f64)>,
+    carried: Option<(MoveRange, f64, f64)>,
 }
 
-impl<const N: usize> Merger<N> {
+impl<const N: usize> SegmentMerger<N> {
     pub(crate) fn new(start: Vector<N>) -> Self {
         let mut merger = Self {
             anchor: start,
-            run: Vec::with_capacity(MOST_MERGED),
+            run: Vec::with_capacity(MAX_MERGED),
             tolerance: f64::INFINITY,
             slowest: f64::INFINITY,
             fastest: 0.0,
@@ -78,7 +78,7 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Takes the next vertex; gives the leg that it completes.
-    pub(crate) fn push(&mut self, mut vertex: Vertex<N>) -> Option<Leg<N>> {
+    pub(crate) fn push(&mut self, mut vertex: Vertex<N>) -> Option<Segment<N>> {
         if let Some(last) = self.run.last()
             && vertex.point == last.point
         {
@@ -103,9 +103,9 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Completes the leg under way, if there is one.
-    pub(crate) fn flush(&mut self) -> Option<Leg<N>> {
+    pub(crate) fn flush(&mut self) -> Option<Segment<N>> {
         let (first, last) = (*self.run.first()?, *self.run.last()?);
-        let serves = Serves {
+        let serves = MoveRange {
             first: first.serves.first,
             last: last.serves.last,
         };
@@ -119,7 +119,7 @@ impl<const N: usize> Merger<N> {
         self.anchor = last.point;
         let (serves, stray, tolerance) = self.with_carried(serves, stray, tolerance);
         self.carried = None;
-        Some(Leg {
+        Some(Segment {
             end: last.point,
             feedrate,
             room: tolerance - stray,
@@ -134,27 +134,27 @@ impl<const N: usize> Merger<N> {
 
     /// Moves that such a pulse serves, those that were carried among them, and what the carried ones leave
     /// of their tolerance.
-    pub(crate) fn serve(&mut self, serves: Serves) -> (Serves, f64) {
+    pub(crate) fn serve(&mut self, serves: MoveRange) -> (MoveRange, f64) {
         let (serves, stray, tolerance) = self.with_carried(serves, 0.0, f64::INFINITY);
         self.carried = None;
         (serves, tolerance - stray)
     }
 
     /// Moves that led nowhere and that no leg has served.
-    pub(crate) fn take_carried(&mut self) -> Option<Serves> {
+    pub(crate) fn take_carried(&mut self) -> Option<MoveRange> {
         self.carried.take().map(|(serves, ..)| serves)
     }
 
     /// Keeps moves that end where they began.
-    pub(crate) fn carry(&mut self, serves: Serves, stray: f64, tolerance: f64) {
+    pub(crate) fn carry(&mut self, serves: MoveRange, stray: f64, tolerance: f64) {
         self.carried = Some(self.with_carried(serves, stray, tolerance));
     }
 
-    fn with_carried(&self, serves: Serves, stray: f64, tolerance: f64) -> (Serves, f64, f64) {
+    fn with_carried(&self, serves: MoveRange, stray: f64, tolerance: f64) -> (MoveRange, f64, f64) {
         match self.carried {
             None => (serves, stray, tolerance),
             Some((before, its_stray, its_tolerance)) => (
-                Serves {
+                MoveRange {
                     first: before.first,
                     last: serves.last,
                 },
@@ -195,7 +195,7 @@ impl<const N: usize> Merger<N> {
         if self.run.is_empty() {
             return Some(0.0);
         }
-        if self.run.len() >= MOST_MERGED {
+        if self.run.len() >= MAX_MERGED {
             return None;
         }
         let tolerance = self.tolerance.min(vertex.tolerance);
@@ -233,13 +233,13 @@ mod tests {
             bulge: 0.0,
             feedrate: 10.0,
             tolerance: 0.1,
-            serves: Serves::one(index),
+            serves: MoveRange::one(index),
         }
     }
 
     #[test]
     fn corners_near_a_line_are_left_out_and_use_up_tolerance() {
-        let mut merger = Merger::new(Vector::<2>::zeros());
+        let mut merger = SegmentMerger::new(Vector::<2>::zeros());
         for (index, point) in [[1.0, 0.005], [2.0, 0.0], [3.0, -0.01]]
             .into_iter()
             .enumerate()
@@ -249,7 +249,7 @@ mod tests {
         }
         let leg = merger.push(vertex([3.0, 1.0], 3)).unwrap();
         assert_eq!(leg.end, Vector::<2>::new(3.0, -0.01), "end");
-        assert_eq!(leg.serves, Serves { first: 0, last: 2 }, "moves");
+        assert_eq!(leg.serves, MoveRange { first: 0, last: 2 }, "moves");
         let off = 0.1 - leg.room;
         assert!((off - 0.0083333).abs() < 1e-6, "{off} mm is used up");
         let last = merger.flush().unwrap();
@@ -258,25 +258,25 @@ mod tests {
 
     #[test]
     fn a_way_there_and_back_is_served_by_what_follows() {
-        let mut merger = Merger::new(Vector::<2>::zeros());
+        let mut merger = SegmentMerger::new(Vector::<2>::zeros());
         assert_eq!(merger.push(vertex([0.01, 0.0], 0)), None, "there");
         assert_eq!(merger.push(vertex([0.0, 0.0], 1)), None, "back");
         assert_eq!(merger.flush(), None, "it leads nowhere");
         assert_eq!(merger.push(vertex([5.0, 0.0], 2)), None, "on");
         let leg = merger.flush().unwrap();
-        assert_eq!(leg.serves, Serves { first: 0, last: 2 }, "moves");
+        assert_eq!(leg.serves, MoveRange { first: 0, last: 2 }, "moves");
         assert!((leg.room - 0.09).abs() < 1e-15, "{} mm are left", leg.room);
     }
 
     #[test]
     fn a_pulse_that_is_no_leg_keeps_the_tolerance_of_what_it_serves() {
-        let mut merger = Merger::new(Vector::<2>::zeros());
+        let mut merger = SegmentMerger::new(Vector::<2>::zeros());
         merger.push(vertex([0.01, 0.0], 0));
         merger.push(vertex([0.0, 0.0], 1));
         merger.flush();
-        let own = Serves { first: 2, last: 2 };
+        let own = MoveRange { first: 2, last: 2 };
         let (serves, room) = merger.serve(own);
-        assert_eq!(serves, Serves { first: 0, last: 2 }, "moves");
+        assert_eq!(serves, MoveRange { first: 0, last: 2 }, "moves");
         assert!((room - 0.09).abs() < 1e-15, "{room} mm are left");
         assert_eq!(merger.serve(own), (own, f64::INFINITY), "served once");
     }
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn moves_of_different_feedrates_stay_apart_unless_they_are_nothing() {
         for (length, merged) in [(1.0, false), (1e-4, true)] {
-            let mut merger = Merger::new(Vector::<2>::zeros());
+            let mut merger = SegmentMerger::new(Vector::<2>::zeros());
             merger.push(vertex([length, 0.0], 0));
             let slower = Vertex {
                 feedrate: 5.0,

@@ -10,7 +10,7 @@ use crate::filter::taps::{SAME_INSTANT, Taps};
 use crate::lookahead::command::{Command, TimedPulse};
 use crate::lookahead::queue::Queue;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Piece, Sample, Serves, Vector};
+use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
 
 /// Knots after which the state is computed afresh, without a comb and with one: rounding of so many steps is
 /// far below what the judge can see.
@@ -37,7 +37,7 @@ struct Active<const N: usize> {
     from: Vector<N>,
     to: Vector<N>,
     velocity: Vector<N>,
-    serves: Serves,
+    serves: MoveRange,
 }
 
 /// The exact motion behind a chain, piece by piece.
@@ -241,13 +241,13 @@ impl<const N: usize> Sweep<N> {
     }
 
     /// The pulses that shape the motion now.
-    fn serves(&mut self) -> Serves {
+    fn serves(&mut self) -> MoveRange {
         while let Some(next) = self.active.items().get(self.begun)
             && next.begin <= self.time + SAME_INSTANT
         {
             self.begun += 1;
         }
-        let none = Serves { first: 0, last: 0 };
+        let none = MoveRange { first: 0, last: 0 };
         let first = self
             .active
             .items()
@@ -258,7 +258,7 @@ impl<const N: usize> Sweep<N> {
             .items()
             .get(self.begun.saturating_sub(1))
             .map_or(first, |pulse| pulse.serves);
-        Serves {
+        MoveRange {
             first: first.first,
             last: last.last,
         }

@@ -5,7 +5,7 @@
 //! the axis turns while the tip stands still in the workpiece, and the tool goes upright again. Not here:
 //! moves that pass a pole at a distance.
 
-use crate::axis_limits::axis_path::Way;
+use crate::axis_limits::axis_path::AxisPaths;
 use crate::error::FiveAxisError;
 use crate::pose::block::PoseBlock;
 use crate::pose::swing::Swing;
@@ -23,7 +23,7 @@ const SAME_PLACE: f64 = 1e-12;
 
 /// How far the tool leans while an axis turns, as a share of its tolerance; and at most, rad.
 const LEAN: f64 = 0.2;
-const MOST_LEAN: f64 = 1e-3;
+const MAX_LEAN: f64 = 1e-3;
 
 /// Orientations found in two ways differ by less than this, rad.
 const AGREES: f64 = 1e-12;
@@ -136,8 +136,8 @@ impl Spin {
         block: &PoseBlock,
         machine: &dyn MachineKinematics,
         at: &AxisVector,
-    ) -> Result<(Option<Way>, Option<Self>), FiveAxisError> {
-        let way = Way::along(block, machine, at);
+    ) -> Result<(Option<AxisPaths>, Option<Self>), FiveAxisError> {
+        let way = AxisPaths::along(block, machine, at);
         let Some(turn) = block.turn.circle() else {
             return way.map(|way| (Some(way), None));
         };
@@ -197,7 +197,7 @@ impl Spin {
             let way = match Self::before(&part, machine, &at)? {
                 (Some(way), _) => way,
                 (None, spin) => {
-                    Way::along(&part, machine, spin.as_ref().map_or(&at, |spin| &spin.to))?
+                    AxisPaths::along(&part, machine, spin.as_ref().map_or(&at, |spin| &spin.to))?
                 }
             };
             at = *way.last();
@@ -229,7 +229,7 @@ impl Spin {
     ) -> Result<[PoseBlock; 3], FiveAxisError> {
         let axes = machine.axes();
         let refused = || self.refused(block, axes);
-        let lean = (LEAN * block.orientation_tolerance).min(MOST_LEAN);
+        let lean = (LEAN * block.orientation_tolerance).min(MAX_LEAN);
         let upright = block
             .turn
             .circle()

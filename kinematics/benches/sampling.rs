@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use toolglide_kinematics::{Piece, Sample, SamplePeriod, Sampler, Serves, Vector};
+use toolglide_kinematics::{MoveRange, Piece, Sample, SamplePeriod, Sampler, Vector};
 
 /// Pieces of one motion.
 const PIECES: u32 = 2_000;
@@ -24,7 +24,7 @@ fn motion(periods: f64) -> Vec<Piece<3>> {
             _ => 0.0,
         });
         let duration = PERIOD * periods * (1.0 + 0.3 * f64::from(number % 7) / 7.0);
-        let piece = Piece::new(&state, duration, Vector::zeros(), Serves::one(number));
+        let piece = Piece::new(&state, duration, Vector::zeros(), MoveRange::one(number));
         // The end is where the polynomial leads.
         let almost = piece.at(duration * (1.0 - f64::EPSILON));
         pieces.push(Piece::new(

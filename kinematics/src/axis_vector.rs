@@ -8,11 +8,11 @@ use std::fmt;
 use std::ops::{Deref, DerefMut};
 
 /// Most axes that a machine has: X, Y, Z, A, B, C, U, V and W.
-pub const MOST_AXES: usize = 9;
+pub const MAX_AXES: usize = 9;
 
 /// Most branches in which a machine takes one pose: an arm may reach forward or backward, with the
 /// elbow up or down, and with the wrist on either side.
-pub const MOST_SOLUTIONS: usize = 8;
+pub const MAX_SOLUTIONS: usize = 8;
 
 /// A position for each axis of a machine, in machine order: mm for linear axes, rad for rotary ones.
 ///
@@ -28,7 +28,7 @@ pub const MOST_SOLUTIONS: usize = 8;
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct AxisVector {
-    positions: [f64; MOST_AXES],
+    positions: [f64; MAX_AXES],
     axes: usize,
 }
 
@@ -36,12 +36,12 @@ impl AxisVector {
     /// So many axes, all at 0.
     ///
     /// # Panics
-    /// When there are more than [`MOST_AXES`].
+    /// When there are more than [`MAX_AXES`].
     #[must_use]
     pub const fn zeros(axes: usize) -> Self {
-        assert!(axes <= MOST_AXES, "a machine has at most nine axes");
+        assert!(axes <= MAX_AXES, "a machine has at most nine axes");
         Self {
-            positions: [0.0; MOST_AXES],
+            positions: [0.0; MAX_AXES],
             axes,
         }
     }
@@ -49,12 +49,12 @@ impl AxisVector {
     /// These positions, one per axis.
     ///
     /// # Errors
-    /// [`KinematicsError::AxisCount`] when there are more than [`MOST_AXES`].
+    /// [`KinematicsError::AxisCount`] when there are more than [`MAX_AXES`].
     pub fn from_slice(positions: &[f64]) -> Result<Self, KinematicsError> {
-        if positions.len() > MOST_AXES {
+        if positions.len() > MAX_AXES {
             return Err(KinematicsError::AxisCount {
                 given: positions.len(),
-                axes: MOST_AXES,
+                axes: MAX_AXES,
             });
         }
         let mut axes = Self::zeros(positions.len());
@@ -65,7 +65,7 @@ impl AxisVector {
 
 impl<const N: usize> From<[f64; N]> for AxisVector {
     fn from(positions: [f64; N]) -> Self {
-        const { assert!(N <= MOST_AXES, "a machine has at most nine axes") };
+        const { assert!(N <= MAX_AXES, "a machine has at most nine axes") };
         let mut axes = Self::zeros(N);
         axes.copy_from_slice(&positions);
         axes
@@ -97,7 +97,7 @@ impl fmt::Debug for AxisVector {
 /// It is used as the slice that it dereferences to.
 #[derive(Clone, Copy)]
 pub struct Solutions {
-    list: [AxisVector; MOST_SOLUTIONS],
+    list: [AxisVector; MAX_SOLUTIONS],
     count: usize,
 }
 
@@ -106,7 +106,7 @@ impl Solutions {
     #[must_use]
     pub const fn none() -> Self {
         Self {
-            list: [AxisVector::zeros(0); MOST_SOLUTIONS],
+            list: [AxisVector::zeros(0); MAX_SOLUTIONS],
             count: 0,
         }
     }
@@ -114,7 +114,7 @@ impl Solutions {
     /// Adds a solution behind those that there are.
     ///
     /// # Panics
-    /// When there are [`MOST_SOLUTIONS`] already.
+    /// When there are [`MAX_SOLUTIONS`] already.
     pub fn push(&mut self, axes: AxisVector) {
         self.list[self.count] = axes;
         self.count += 1;
@@ -165,10 +165,10 @@ mod tests {
     #[test]
     fn too_many_axes_are_refused() {
         assert_eq!(
-            AxisVector::from_slice(&[0.0; MOST_AXES + 1]),
+            AxisVector::from_slice(&[0.0; MAX_AXES + 1]),
             Err(KinematicsError::AxisCount {
-                given: MOST_AXES + 1,
-                axes: MOST_AXES
+                given: MAX_AXES + 1,
+                axes: MAX_AXES
             })
         );
     }

@@ -1,6 +1,6 @@
 //! What can be wrong with limits and paths.
 
-use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LEAST_QUANTITY, LONGEST_RAMP};
+use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LONGEST_RAMP, MIN_QUANTITY};
 use thiserror::Error;
 
 /// Why limits are refused.
@@ -64,8 +64,8 @@ pub enum ToolpathError {
         /// What was given.
         value: f64,
     },
-    /// A quantity is below [`LEAST_QUANTITY`].
-    #[error("{quantity} is {value}, but must be at least {LEAST_QUANTITY}")]
+    /// A quantity is below [`MIN_QUANTITY`].
+    #[error("{quantity} is {value}, but must be at least {MIN_QUANTITY}")]
     TooSmall {
         /// Which quantity.
         quantity: &'static str,
@@ -126,7 +126,7 @@ pub enum ToolpathError {
         /// The distance, mm.
         gap: f64,
     },
-    /// The tolerance of an arc is below [`LEAST_SHARE_OF_RADIUS`](crate::numeric::LEAST_SHARE_OF_RADIUS).
+    /// The tolerance of an arc is below [`MIN_SHARE_OF_RADIUS`](crate::numeric::MIN_SHARE_OF_RADIUS).
     #[error(
         "tolerance is {tolerance:e} mm, but must be at least {least:e} mm for an arc of radius {radius} mm"
     )]

@@ -4,7 +4,7 @@
 //! and 3.2. Not here: travel, which belongs to a machine.
 
 use crate::error::LimitsError;
-use crate::numeric::{LARGEST_QUANTITY, LEAST_ACCELERATION, LEAST_QUANTITY, LONGEST_RAMP};
+use crate::numeric::{LARGEST_QUANTITY, LONGEST_RAMP, MIN_ACCELERATION, MIN_QUANTITY};
 use crate::vector::Vector;
 
 /// The limits of one axis.
@@ -20,7 +20,7 @@ impl AxisLimits {
     ///
     /// # Errors
     /// [`LimitsError::NotPositive`] names the first quantity that is not, [`LimitsError::TooSmall`] the first
-    /// one below [`LEAST_QUANTITY`] or [`LEAST_ACCELERATION`], [`LimitsError::TooLarge`] the first one above
+    /// one below [`MIN_QUANTITY`] or [`MIN_ACCELERATION`], [`LimitsError::TooLarge`] the first one above
     /// [`LARGEST_QUANTITY`]; [`LimitsError::TooSlow`] where acceleration or velocity takes longer than
     /// [`LONGEST_RAMP`] to reach.
     ///
@@ -32,9 +32,9 @@ impl AxisLimits {
     /// ```
     pub fn new(velocity: f64, acceleration: f64, jerk: f64) -> Result<Self, LimitsError> {
         for (quantity, value, least) in [
-            ("velocity", velocity, LEAST_QUANTITY),
-            ("acceleration", acceleration, LEAST_ACCELERATION),
-            ("jerk", jerk, LEAST_ACCELERATION),
+            ("velocity", velocity, MIN_QUANTITY),
+            ("acceleration", acceleration, MIN_ACCELERATION),
+            ("jerk", jerk, MIN_ACCELERATION),
         ] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(LimitsError::NotPositive { quantity, value });
@@ -173,8 +173,8 @@ impl<const N: usize> Limits<N> {
     /// The limits of a motion along `direction` (a unit vector): exact, because such a motion moves
     /// each axis by its share of the direction.
     #[must_use]
-    pub fn along(&self, direction: &Vector<N>) -> Tangential {
-        Tangential {
+    pub fn along(&self, direction: &Vector<N>) -> PathLimits {
+        PathLimits {
             velocity: largest_multiple(direction, &self.velocity),
             acceleration: largest_multiple(direction, &self.acceleration),
             jerk: largest_multiple(direction, &self.jerk),
@@ -184,7 +184,7 @@ impl<const N: usize> Limits<N> {
 
 /// Limits of velocity, acceleration and jerk of a motion along one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tangential {
+pub struct PathLimits {
     /// Largest speed.
     pub velocity: f64,
     /// Largest acceleration.
@@ -193,7 +193,7 @@ pub struct Tangential {
     pub jerk: f64,
 }
 
-impl Tangential {
+impl PathLimits {
     /// How long it takes to change the speed by `change` (not negative) between zero accelerations.
     #[must_use]
     pub fn time_to_change(&self, change: f64) -> f64 {

@@ -3,7 +3,7 @@
 //! Source: section 5.2 for the map; linear machines of chapters 2 to 4 are the identity. Not here:
 //! machines themselves.
 
-use crate::axis_vector::{AxisVector, MOST_AXES, Solutions};
+use crate::axis_vector::{AxisVector, MAX_AXES, Solutions};
 use crate::limits::AxisLimits;
 use crate::numeric::{ANGLE_SLACK, LENGTH_SLACK};
 use crate::pose::tool_pose::ToolPose;
@@ -130,8 +130,8 @@ pub trait MachineKinematics: Send + Sync {
     ///
     /// # Errors
     /// What [`MachineKinematics::forward`] says of `at`.
-    fn swings(&self, at: &AxisVector) -> Result<[Vector<3>; MOST_AXES], KinematicsError> {
-        let mut swings = [Vector::zeros(); MOST_AXES];
+    fn swings(&self, at: &AxisVector) -> Result<[Vector<3>; MAX_AXES], KinematicsError> {
+        let mut swings = [Vector::zeros(); MAX_AXES];
         for (axis, limits) in self.axes().iter().enumerate() {
             if limits.kind != AxisKind::Rotary {
                 continue;

@@ -42,7 +42,7 @@ pub const ARC_RADIUS_MISMATCH_MOST: f64 = 100.0 * ARC_RADIUS_MISMATCH;
 pub const UNIT_LENGTH_ERROR: f64 = 1e-3;
 
 /// Share of a tolerance that remains however much of it was used, so that a tolerance stays positive.
-pub const LEAST_SHARE: f64 = 1e-3;
+pub const MIN_SHARE: f64 = 1e-3;
 
 /// Room granted to a length per mm of coordinate, dimensionless: the rounding of some sixteen
 /// operations on a coordinate.
@@ -99,14 +99,14 @@ pub const LARGEST_QUANTITY: f64 = 1e15;
 
 /// A tolerance below this share of the radius of its arc is refused: a turn would have more than 200,000 chords, and
 /// float arithmetic would leave less than six digits of the tolerance.
-pub const LEAST_SHARE_OF_RADIUS: f64 = 1e-10;
+pub const MIN_SHARE_OF_RADIUS: f64 = 1e-10;
 
 /// Dwells beyond this are refused, s: thirty years.
 pub const LONGEST_DURATION: f64 = 1e9;
 
 /// Limits, feedrates and tolerances below this are refused, mm, rad and their quotients with s: no axis is so
 /// slow and no encoder so fine, and motion within them would outlast the digits of its time.
-pub const LEAST_QUANTITY: f64 = 1e-9;
+pub const MIN_QUANTITY: f64 = 1e-9;
 
 /// How many moves ahead the judge of set-points looks at most for a motion that has left its path:
 /// enough for moves of a hundredth of the tolerance, and a millisecond at worst.
@@ -114,7 +114,7 @@ pub const LOOK_AHEAD_MOVES: u32 = 1024;
 
 /// Limits of acceleration and jerk below this are refused, mm, rad and their quotients with s: over ten kilometres a
 /// motion would take months.
-pub const LEAST_ACCELERATION: f64 = 1e-6;
+pub const MIN_ACCELERATION: f64 = 1e-6;
 
 /// An axis that takes longer than this to build up its acceleration, or to reach its velocity at that, is refused, s:
 /// a quarter of an hour of one phase beside the milliseconds of another leaves too few digits of either.

@@ -21,13 +21,13 @@ use crate::vector::Vector;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Intake<const N: usize> {
+pub struct PathCursor<const N: usize> {
     end: Vector<N>,
     count: u32,
     closed: bool,
 }
 
-impl<const N: usize> Intake<N> {
+impl<const N: usize> PathCursor<N> {
     /// Nothing taken yet of a path from `start`.
     #[must_use]
     pub fn new(start: Vector<N>) -> Self {

@@ -2,7 +2,7 @@
 //!
 //! Source: the dwell of a program, and moves shorter than what is told apart. Not here: coming to rest.
 
-use crate::piece::{Piece, Serves};
+use crate::piece::{MoveRange, Piece};
 use crate::sample::Sample;
 use crate::vector::Vector;
 
@@ -12,7 +12,7 @@ pub struct Pause<const N: usize> {
     /// How long it lasts; 0 for moves that led nowhere.
     pub duration: f64,
     /// The moves that it serves.
-    pub serves: Serves,
+    pub serves: MoveRange,
     /// The programmed point at its end.
     pub end: Vector<N>,
 }
@@ -29,7 +29,7 @@ impl<const N: usize> Pause<N> {
     pub fn then(self, next: Self) -> Self {
         Self {
             duration: self.duration + next.duration,
-            serves: Serves {
+            serves: MoveRange {
                 first: self.serves.first,
                 last: next.serves.last,
             },

@@ -7,14 +7,14 @@ use crate::vector::Vector;
 
 /// The moves of a toolpath that a stretch of motion follows, counted from 0 in path order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Serves {
+pub struct MoveRange {
     /// First move that it follows.
     pub first: u32,
     /// Last move that it follows: the same on a straight stretch, the next one in a corner.
     pub last: u32,
 }
 
-impl Serves {
+impl MoveRange {
     /// One move alone.
     #[must_use]
     pub fn one(index: u32) -> Self {
@@ -34,14 +34,14 @@ pub struct Piece<const N: usize> {
     jerk: Vector<N>,
     end: Vector<N>,
     duration: f64,
-    serves: Serves,
+    serves: MoveRange,
 }
 
 impl<const N: usize> Piece<N> {
     /// A piece from its state at the start, its jerk and its duration (s, not negative), which ends
     /// at `end`: the programmed point where there is one, so that rounding never adds up.
     #[must_use]
-    pub fn new(start: &Sample<N>, duration: f64, end: Vector<N>, serves: Serves) -> Self {
+    pub fn new(start: &Sample<N>, duration: f64, end: Vector<N>, serves: MoveRange) -> Self {
         debug_assert!(
             duration >= 0.0 && duration.is_finite(),
             "a piece must not last {duration} s"
@@ -65,7 +65,7 @@ impl<const N: usize> Piece<N> {
 
     /// The moves that it follows.
     #[must_use]
-    pub fn serves(&self) -> Serves {
+    pub fn serves(&self) -> MoveRange {
         self.serves
     }
 

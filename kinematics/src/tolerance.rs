@@ -4,7 +4,7 @@
 //! is that of section 5.3.
 
 use crate::error::ToolpathError;
-use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LEAST_QUANTITY, LEAST_SHARE};
+use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, MIN_QUANTITY, MIN_SHARE};
 
 /// Corner tolerance: every point of the motion lies within it of the path, and the motion passes
 /// within it of every corner. Positive and finite, mm.
@@ -16,7 +16,7 @@ fn sized(quantity: &'static str, value: f64, bound: f64) -> Result<f64, Toolpath
     if !(value > 0.0 && value.is_finite()) {
         return Err(ToolpathError::NotPositive { quantity, value });
     }
-    if value < LEAST_QUANTITY {
+    if value < MIN_QUANTITY {
         return Err(ToolpathError::TooSmall { quantity, value });
     }
     if value > bound {
@@ -34,7 +34,7 @@ impl Tolerance {
     ///
     /// # Errors
     /// [`ToolpathError::NotPositive`] unless it is positive and finite, [`ToolpathError::TooSmall`] below
-    /// [`LEAST_QUANTITY`], [`ToolpathError::TooLarge`] above [`LARGEST_COORDINATE`].
+    /// [`MIN_QUANTITY`], [`ToolpathError::TooLarge`] above [`LARGEST_COORDINATE`].
     pub fn new(length: f64) -> Result<Self, ToolpathError> {
         sized("tolerance", length, LARGEST_COORDINATE).map(Self)
     }
@@ -48,7 +48,7 @@ impl Tolerance {
     /// What is left of the tolerance after `used` mm of it; at least a thousandth.
     #[must_use]
     pub fn less(self, used: f64) -> Self {
-        Self((self.0 - used.max(0.0)).max(self.0 * LEAST_SHARE))
+        Self((self.0 - used.max(0.0)).max(self.0 * MIN_SHARE))
     }
 
     /// The smaller of two tolerances.
@@ -71,7 +71,7 @@ impl Feedrate {
     ///
     /// # Errors
     /// [`ToolpathError::NotPositive`] unless it is positive and finite, [`ToolpathError::TooSmall`] below
-    /// [`LEAST_QUANTITY`], [`ToolpathError::TooLarge`] above [`LARGEST_QUANTITY`].
+    /// [`MIN_QUANTITY`], [`ToolpathError::TooLarge`] above [`LARGEST_QUANTITY`].
     pub fn new(speed: f64) -> Result<Self, ToolpathError> {
         sized("feedrate", speed, LARGEST_QUANTITY).map(Self)
     }
@@ -104,7 +104,7 @@ impl OrientationTolerance {
     ///
     /// # Errors
     /// [`ToolpathError::NotPositive`] unless it is positive and below a half turn,
-    /// [`ToolpathError::TooSmall`] below [`LEAST_QUANTITY`].
+    /// [`ToolpathError::TooSmall`] below [`MIN_QUANTITY`].
     pub fn new(angle: f64) -> Result<Self, ToolpathError> {
         let (quantity, value) = ("orientation tolerance", angle);
         if angle >= std::f64::consts::PI {
@@ -154,7 +154,7 @@ mod tests {
                 "limit of {value}"
             );
         }
-        assert!(Tolerance::new(LEAST_QUANTITY).is_ok(), "the least");
+        assert!(Tolerance::new(MIN_QUANTITY).is_ok(), "the least");
         assert!(Tolerance::new(LARGEST_COORDINATE).is_ok(), "the largest");
         assert!(Feedrate::new(LARGEST_QUANTITY).is_ok(), "the largest");
         for (refused, bound) in [

@@ -4,7 +4,7 @@
 
 use crate::arc::Arc;
 use crate::error::ToolpathError;
-use crate::numeric::{LEAST_SHARE_OF_RADIUS, LENGTH_SLACK, LONGEST_DURATION};
+use crate::numeric::{LENGTH_SLACK, LONGEST_DURATION, MIN_SHARE_OF_RADIUS};
 use crate::tolerance::{Feedrate, Tolerance};
 use crate::vector::{Vector, check};
 
@@ -254,7 +254,7 @@ impl<const N: usize> Toolpath<N> {
 ///
 /// # Errors
 /// [`ToolpathError::Gap`] when it is an arc that starts elsewhere, [`ToolpathError::TooFine`] when its tolerance is
-/// below [`LEAST_SHARE_OF_RADIUS`].
+/// below [`MIN_SHARE_OF_RADIUS`].
 pub fn check_contact<const N: usize>(next: &Move<N>, at: Vector<N>) -> Result<(), ToolpathError> {
     if let Path::Arc(arc) = next.path() {
         let gap = (arc.start() - at).norm();
@@ -263,7 +263,7 @@ pub fn check_contact<const N: usize>(next: &Move<N>, at: Vector<N>) -> Result<()
         }
         let (start_radius, end_radius) = arc.radii();
         let radius = start_radius.max(end_radius);
-        let (tolerance, least) = (next.tolerance.length(), LEAST_SHARE_OF_RADIUS * radius);
+        let (tolerance, least) = (next.tolerance.length(), MIN_SHARE_OF_RADIUS * radius);
         if tolerance < least {
             return Err(ToolpathError::TooFine {
                 tolerance,

@@ -17,7 +17,7 @@ const DEFAULT_TOLERANCE: f64 = 0.01;
 const DEFAULT_PERIOD: f64 = 0.001;
 
 /// Reference points that an axis may have.
-const MOST_REFERENCES: usize = 4;
+const MAX_REFERENCES: usize = 4;
 
 /// What is asked of every limit, tolerance and period.
 const POSITIVE: &str = "positive and finite";
@@ -182,7 +182,7 @@ impl MachineConfig {
         let mut points = vec![[0.0; 6]; most.unwrap_or(0)];
         for axis in &self.axis {
             let field = || format!("axis {}: reference", axis.name);
-            if axis.reference.len() > MOST_REFERENCES {
+            if axis.reference.len() > MAX_REFERENCES {
                 let bound = "a list of four numbers at most";
                 return Err(MachineError::field(field(), axis.reference.len(), bound));
             }

@@ -20,7 +20,7 @@ const LETTERS: [char; 9] = ['X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 'W'];
 const ROTARY: std::ops::Range<usize> = 3..6;
 
 /// Most axes.
-const MOST_AXES: usize = 6;
+const MAX_AXES: usize = 6;
 
 /// Names of the models, which differ in their presets alone.
 const MODELS: [&str; 6] = [
@@ -80,8 +80,8 @@ fn kinds(config: &MachineConfig) -> Result<Vec<(char, AxisKind)>, MachineError> 
     if wanted.iter().all(|letter| "XYZ".contains(*letter)) {
         wanted.push('A');
     }
-    if given != wanted || given.len() > MOST_AXES {
-        wanted.truncate(MOST_AXES);
+    if given != wanted || given.len() > MAX_AXES {
+        wanted.truncate(MAX_AXES);
         return Err(MachineError::Axes { given, wanted });
     }
     let rotary = |letter: &char| LETTERS[ROTARY].contains(letter);

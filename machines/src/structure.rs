@@ -8,7 +8,7 @@ use crate::config::{AxisConfig, MachineConfig, file_unit};
 use crate::error::MachineError;
 use toolglide_kinematics::numeric::{ANGLE_SLACK, LENGTH_SLACK};
 use toolglide_kinematics::{
-    Axis, AxisKind, AxisVector, KinematicsError, MOST_SOLUTIONS, MachineKinematics, SamplePeriod,
+    Axis, AxisKind, AxisVector, KinematicsError, MAX_SOLUTIONS, MachineKinematics, SamplePeriod,
     Solutions, Tolerance, ToolPose, Vector,
 };
 
@@ -44,7 +44,7 @@ pub trait Structure<const N: usize>: Send + Sync {
 /// The joints of every branch that gives one pose.
 #[derive(Clone, Copy, Debug)]
 pub struct Branches<const N: usize> {
-    list: [[f64; N]; MOST_SOLUTIONS],
+    list: [[f64; N]; MAX_SOLUTIONS],
     count: usize,
 }
 
@@ -53,7 +53,7 @@ impl<const N: usize> Branches<N> {
     #[must_use]
     pub const fn none() -> Self {
         Self {
-            list: [[0.0; N]; MOST_SOLUTIONS],
+            list: [[0.0; N]; MAX_SOLUTIONS],
             count: 0,
         }
     }
@@ -69,7 +69,7 @@ impl<const N: usize> Branches<N> {
     /// Adds a branch.
     ///
     /// # Panics
-    /// When there are [`MOST_SOLUTIONS`] already.
+    /// When there are [`MAX_SOLUTIONS`] already.
     pub fn push(&mut self, joints: [f64; N]) {
         self.list[self.count] = joints;
         self.count += 1;
@@ -330,7 +330,7 @@ impl<S: Structure<N> + 'static, const N: usize> MachineKinematics for Assembly<S
     fn solutions(&self, pose: &ToolPose, near: &AxisVector) -> Result<Solutions, KinematicsError> {
         let branches = self.branches(pose, near)?;
         let mut solutions = Solutions::none();
-        let mut distances = [0.0; MOST_SOLUTIONS];
+        let mut distances = [0.0; MAX_SOLUTIONS];
         for joints in branches.as_slice() {
             let (positions, outside, distance) = self.positions(joints, near, false);
             if outside.is_some() {

@@ -9,7 +9,7 @@ use std::time::Instant;
 use criterion::{Criterion, criterion_group, criterion_main};
 use toolglide_kinematics::{Limits, Vector};
 use toolglide_optimal::{
-    Budget, EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
+    Budget, EndState, ScpSolver, Window, WindowMotion, WindowSegment, WindowSolver,
 };
 
 /// Linearised problems allowed for a window.
@@ -30,7 +30,7 @@ impl Numbers {
     }
 }
 
-fn chain<const N: usize>(count: usize) -> Vec<Segment<N>> {
+fn chain<const N: usize>(count: usize) -> Vec<WindowSegment<N>> {
     let mut numbers = Numbers(88_172_645_463_325_252);
     let mut corner = Vector::<N>::zeros();
     (0..count)
@@ -43,8 +43,8 @@ fn chain<const N: usize>(count: usize) -> Vec<Segment<N>> {
         .collect()
 }
 
-fn segment<const N: usize>(start: Vector<N>, end: Vector<N>) -> Segment<N> {
-    Segment {
+fn segment<const N: usize>(start: Vector<N>, end: Vector<N>) -> WindowSegment<N> {
+    WindowSegment {
         start,
         end,
         tolerance: 0.05,
@@ -54,7 +54,7 @@ fn segment<const N: usize>(start: Vector<N>, end: Vector<N>) -> Segment<N> {
     }
 }
 
-fn measure<const N: usize>(criterion: &mut Criterion, name: &str, segments: &[Segment<N>]) {
+fn measure<const N: usize>(criterion: &mut Criterion, name: &str, segments: &[WindowSegment<N>]) {
     let limits = Limits::<N>::uniform(500.0, 2_000.0, 5e4).unwrap();
     let window = Window {
         start: EndState::rest(segments[0].start),
@@ -66,7 +66,7 @@ fn measure<const N: usize>(criterion: &mut Criterion, name: &str, segments: &[Se
         .iter()
         .map(|segment| 0.04 + (segment.end - segment.start).norm() / 80.0)
         .collect();
-    let mut solver = SequentialSolver::new();
+    let mut solver = ScpSolver::new();
     let mut motion = WindowMotion::new();
     let mut solve = || {
         motion.durations.clone_from(&guess);

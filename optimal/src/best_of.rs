@@ -12,13 +12,13 @@ use toolglide_kinematics::numeric::TIME_SLACK;
 
 /// Events held of either motion before a stretch is led by one of them: some minutes, and some ten
 /// megabytes.
-const MOST_HELD: usize = 1 << 16;
+const MAX_HELD: usize = 1 << 16;
 
 /// Which motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Lane {
-    Mine,
-    Theirs,
+enum Source {
+    Optimal,
+    Smoothed,
 }
 
 /// How many events and pieces are left up to the end of a stretch, and whether it ends at rest.
@@ -42,13 +42,13 @@ enum Place {
 
 /// Two motions, as far as they are known and not handed out.
 #[derive(Clone, Debug)]
-pub(crate) struct Race<const N: usize> {
+pub(crate) struct FasterOf<const N: usize> {
     mine: VecDeque<Event<N>>,
     theirs: VecDeque<Piece<N>>,
     /// Last move of each stretch that ends in a stop.
     ends: VecDeque<u32>,
     /// Who travels the stretch under way, once that is settled, and to where, once that is known.
-    lane: Option<Lane>,
+    lane: Option<Source>,
     bound: Option<Bound>,
     /// Whether one of two motions is missing in this stretch, and in one that was led by it.
     lost: bool,
@@ -66,13 +66,13 @@ pub(crate) struct Race<const N: usize> {
     yielded: u64,
 }
 
-impl<const N: usize> Race<N> {
+impl<const N: usize> FasterOf<N> {
     /// Two motions at rest; a stop costs less than `reserve` seconds.
     pub(crate) fn new(reserve: f64) -> Self {
         Self {
-            mine: VecDeque::with_capacity(MOST_HELD + 1),
-            theirs: VecDeque::with_capacity(MOST_HELD + 2),
-            ends: VecDeque::with_capacity(MOST_HELD),
+            mine: VecDeque::with_capacity(MAX_HELD + 1),
+            theirs: VecDeque::with_capacity(MAX_HELD + 2),
+            ends: VecDeque::with_capacity(MAX_HELD),
             lane: None,
             bound: None,
             lost: false,
@@ -119,7 +119,7 @@ impl<const N: usize> Race<N> {
 
     /// Whether the motion is handed out before the end of its stretch is known.
     pub(crate) fn leads(&self) -> bool {
-        self.lane == Some(Lane::Mine) && self.bound.is_none()
+        self.lane == Some(Source::Optimal) && self.bound.is_none()
     }
 
     /// Takes what both have ready, as far as there is room for it.
@@ -128,12 +128,12 @@ impl<const N: usize> Race<N> {
         mut mine: impl FnMut() -> Option<Event<N>>,
         mut theirs: impl FnMut() -> Option<Piece<N>>,
     ) {
-        while self.mine.len() < MOST_HELD
+        while self.mine.len() < MAX_HELD
             && let Some(event) = mine()
         {
             self.mine.push_back(event);
         }
-        while self.theirs.len() < MOST_HELD
+        while self.theirs.len() < MAX_HELD
             && let Some(piece) = theirs()
         {
             self.theirs.push_back(piece);
@@ -149,7 +149,7 @@ impl<const N: usize> Race<N> {
                 return None;
             }
             match (self.lane?, self.bound) {
-                (Lane::Mine, Some(bound)) => {
+                (Source::Optimal, Some(bound)) => {
                     if bound.events == 0 {
                         self.begin(bound);
                         continue;
@@ -162,7 +162,7 @@ impl<const N: usize> Race<N> {
                         return Some(piece);
                     }
                 }
-                (Lane::Theirs, Some(bound)) => {
+                (Source::Smoothed, Some(bound)) => {
                     if bound.pieces == 0 {
                         self.begin(bound);
                         continue;
@@ -173,14 +173,14 @@ impl<const N: usize> Race<N> {
                     });
                     return self.theirs.pop_front();
                 }
-                (Lane::Mine, None) => {
+                (Source::Optimal, None) => {
                     self.walked = self.walked.checked_sub(1)?;
                     if let Event::Piece(piece) = self.mine.pop_front()? {
                         self.follow(&piece);
                         return Some(piece);
                     }
                 }
-                (Lane::Theirs, None) => {
+                (Source::Smoothed, None) => {
                     self.mine.drain(..self.walked);
                     self.walked = 0;
                     let front = self.theirs.front()?;
@@ -226,24 +226,28 @@ impl<const N: usize> Race<N> {
             let lane = self.lane.unwrap_or_else(|| {
                 self.stretches += u64::from(moved);
                 if !self.lost && (self.walked_time < theirs - TIME_SLACK || !moved) {
-                    return Lane::Mine;
+                    return Source::Optimal;
                 }
                 // A line alone is the same for both.
                 self.yielded += u64::from(theirs < self.walked_time - TIME_SLACK);
-                Lane::Theirs
+                Source::Smoothed
             });
             match lane {
-                Lane::Mine => drop(self.theirs.drain(..bound.pieces)),
-                Lane::Theirs => drop(self.mine.drain(..bound.events)),
+                Source::Optimal => drop(self.theirs.drain(..bound.pieces)),
+                Source::Smoothed => drop(self.mine.drain(..bound.events)),
             }
             (self.lane, self.bound) = (Some(lane), Some(bound));
         } else if self.lane.is_none()
-            && (self.mine.len() >= MOST_HELD || self.theirs.len() >= MOST_HELD)
+            && (self.mine.len() >= MAX_HELD || self.theirs.len() >= MAX_HELD)
         {
             let ahead = !self.lost && self.ahead() > self.reserve;
             self.stretches += 1;
             self.yielded += u64::from(!ahead);
-            self.lane = Some(if ahead { Lane::Mine } else { Lane::Theirs });
+            self.lane = Some(if ahead {
+                Source::Optimal
+            } else {
+                Source::Smoothed
+            });
         }
     }
 
@@ -255,7 +259,7 @@ impl<const N: usize> Race<N> {
             match *event {
                 Event::Piece(piece) => self.walked_time += piece.duration(),
                 Event::Lost => {
-                    self.broken |= self.lane == Some(Lane::Mine);
+                    self.broken |= self.lane == Some(Source::Optimal);
                     self.lost = true;
                 }
                 Event::Joint(joint) => match self.place(&joint) {
@@ -301,7 +305,7 @@ impl<const N: usize> Race<N> {
                 return Place::After(at + 1);
             }
         }
-        if self.finished && self.theirs.len() < MOST_HELD {
+        if self.finished && self.theirs.len() < MAX_HELD {
             Place::Nowhere
         } else {
             Place::NotYet
@@ -315,7 +319,7 @@ impl<const N: usize> Race<N> {
             .theirs
             .back()
             .is_some_and(|piece| piece.serves().last > end);
-        let complete = beyond || (self.finished && self.theirs.len() < MOST_HELD);
+        let complete = beyond || (self.finished && self.theirs.len() < MAX_HELD);
         complete.then(|| {
             self.theirs
                 .partition_point(|piece| piece.serves().last <= end)

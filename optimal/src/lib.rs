@@ -16,7 +16,7 @@ mod window;
 pub use planner::{TimeOptimal, plan, plan_with};
 pub use settings::{Effort, Settings};
 pub use solver::budget::Budget;
-pub use solver::sequential::SequentialSolver;
+pub use solver::sequential::ScpSolver;
 pub use window::{
-    EndState, Segment, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSolver,
+    EndState, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSegment, WindowSolver,
 };

@@ -3,15 +3,15 @@
 //! Source: ours. Both plan the whole path; of every stretch the faster motion is handed out, so that it is
 //! never slower than smoothed corners. Not here: either plan, and what a stretch is.
 
-use crate::best_of::Race;
+use crate::best_of::FasterOf;
 use crate::path::spans::weakest;
 use crate::settings::Settings;
-use crate::solver::sequential::SequentialSolver;
+use crate::solver::sequential::ScpSolver;
 use crate::stream::Stream;
 use crate::window::WindowSolver;
-use crate::window::horizon::{MOST_SPANS, ROOM};
+use crate::window::horizon::{MAX_SPANS, ROOM};
 use toolglide_kinematics::{
-    Intake, Limits, MotionPlanner, Move, Piece, Plan, PlanError, Tangential, Toolpath, Vector,
+    Limits, MotionPlanner, Move, PathCursor, PathLimits, Piece, Plan, PlanError, Toolpath, Vector,
     WindowTally,
 };
 use toolglide_smoothing::KinematicSmoothing;
@@ -21,18 +21,18 @@ const STOP_COST: f64 = 4.0;
 
 /// Plans time-optimal motion while the path is being read.
 #[derive(Clone, Debug)]
-pub struct TimeOptimal<const N: usize, S = SequentialSolver<N>> {
-    intake: Intake<N>,
+pub struct TimeOptimal<const N: usize, S = ScpSolver<N>> {
+    intake: PathCursor<N>,
     optimal: Stream<S, N>,
     smoothing: KinematicSmoothing<N>,
-    race: Race<N>,
+    race: FasterOf<N>,
 }
 
 impl<const N: usize> TimeOptimal<N> {
     /// A planner whose motion begins at rest at `start`.
     #[must_use]
     pub fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
-        let solver = SequentialSolver::with_room(MOST_SPANS, ROOM);
+        let solver = ScpSolver::with_room(MAX_SPANS, ROOM);
         Self::with_solver(solver, start, settings)
     }
 }
@@ -42,13 +42,13 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
     #[must_use]
     pub fn with_solver(solver: S, start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
-            intake: Intake::new(start),
+            intake: PathCursor::new(start),
             optimal: Stream::new(solver, start, settings),
             smoothing: KinematicSmoothing::new(
                 start,
                 &toolglide_smoothing::Settings::new(settings.limits),
             ),
-            race: Race::new(STOP_COST * time_to_stop(&settings.limits)),
+            race: FasterOf::new(STOP_COST * time_to_stop(&settings.limits)),
         }
     }
 }
@@ -57,7 +57,7 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
 fn time_to_stop<const N: usize>(limits: &Limits<N>) -> f64 {
     let velocity = limits.velocity().max();
     let (acceleration, jerk) = weakest(limits);
-    let weak = Tangential {
+    let weak = PathLimits {
         velocity,
         acceleration,
         jerk,
@@ -144,7 +144,7 @@ pub fn plan<const N: usize>(
     path: &Toolpath<N>,
     settings: &Settings<N>,
 ) -> Result<Plan<N>, PlanError> {
-    let solver = SequentialSolver::with_room(MOST_SPANS, ROOM);
+    let solver = ScpSolver::with_room(MAX_SPANS, ROOM);
     plan_with(solver, path, settings)
 }
 

@@ -5,20 +5,20 @@
 //! the comparison with other motion.
 
 use crate::path::chords::Chords;
-use crate::path::merge::{Joiner, Run, Vertex};
+use crate::path::merge::{Segment, SegmentMerger, Vertex};
 use crate::path::spans::{Fineness, Part, cut};
 use crate::settings::Settings;
 use crate::window::WindowSolver;
 use crate::window::horizon::Horizon;
 use crate::window::output::Event;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Move, Path, Pause, Serves, Vector, WindowTally};
+use toolglide_kinematics::{Limits, Move, MoveRange, Path, Pause, Vector, WindowTally};
 
 /// Events that are kept room for: those of a window and a few stops.
 const EVENTS: usize = 2048;
 
 /// Moves that wait while planning is behind.
-const MOST_WAITING: usize = 8;
+const MAX_WAITING: usize = 8;
 
 /// Work of windows after which planning waits for the next move, unless none comes: what a long arc costs is spread
 /// over the moves behind it.
@@ -29,7 +29,7 @@ const WORK_A_MOVE: u64 = 80_000;
 pub(crate) struct Stream<S, const N: usize> {
     limits: Limits<N>,
     fineness: Fineness,
-    joiner: Joiner<N>,
+    joiner: SegmentMerger<N>,
     horizon: Horizon<S, N>,
     position: Vector<N>,
     index: u32,
@@ -48,12 +48,12 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         Self {
             limits: settings.limits,
             fineness: settings.effort.fineness(),
-            joiner: Joiner::new(start),
+            joiner: SegmentMerger::new(start),
             horizon: Horizon::new(solver, start, settings),
             position: start,
             index: 0,
             arc: None,
-            waiting: VecDeque::with_capacity(MOST_WAITING),
+            waiting: VecDeque::with_capacity(MAX_WAITING),
             work_before: 0,
             finished: false,
             rests: false,
@@ -63,7 +63,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
 
     /// Takes the next move, which begins where the last one ended. It is planned while motion is pulled.
     pub(crate) fn push(&mut self, next: &Move<N>) {
-        while self.waiting.len() >= MOST_WAITING && self.advance() {}
+        while self.waiting.len() >= MAX_WAITING && self.advance() {}
         self.work_before = self.horizon.tally().work;
         self.waiting.push_back(*next);
     }
@@ -83,7 +83,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
             Path::Dwell { duration } => {
                 self.rest(Some(Pause {
                     duration: *duration,
-                    serves: Serves::one(index),
+                    serves: MoveRange::one(index),
                     end: self.position,
                 }));
                 return;
@@ -174,7 +174,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         }
     }
 
-    fn take_run(&mut self, run: &Run<N>) {
+    fn take_run(&mut self, run: &Segment<N>) {
         cut(run, &self.limits, self.fineness, |part| match part {
             Part::Span(span) => self.horizon.push(span),
             Part::Cruise(cruise) => self.horizon.cruise(&cruise),
@@ -212,16 +212,12 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::sequential::SequentialSolver;
+    use crate::solver::sequential::ScpSolver;
     use toolglide_kinematics::{Feedrate, Tolerance};
 
-    fn stream() -> Stream<SequentialSolver<2>, 2> {
+    fn stream() -> Stream<ScpSolver<2>, 2> {
         let limits = Limits::uniform(500.0, 2500.0, 2e5).unwrap();
-        Stream::new(
-            SequentialSolver::new(),
-            Vector::zeros(),
-            &Settings::new(limits),
-        )
+        Stream::new(ScpSolver::new(), Vector::zeros(), &Settings::new(limits))
     }
 
     /// A staircase of moves of a length at 100 mm/s.
@@ -281,7 +277,7 @@ mod tests {
                 [[2.0, 160.0, 100.0], [400.0, 90.0, 0.1], [4e-3, 2e-4, 1e-3]]
             {
                 let limits = Limits::<2>::uniform(velocity, acceleration, jerk).unwrap();
-                let solver = SequentialSolver::new();
+                let solver = ScpSolver::new();
                 let mut stream = Stream::new(solver, Vector::zeros(), &Settings::new(limits));
                 let mut pieces = 0;
                 for end in [[reach, 0.0], [reach, reach], [0.0, -reach], [0.0, 0.0]] {

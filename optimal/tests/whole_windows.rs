@@ -4,7 +4,7 @@
 
 use toolglide_kinematics::{Limits, Vector};
 use toolglide_optimal::{
-    Budget, EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
+    Budget, EndState, ScpSolver, Window, WindowMotion, WindowSegment, WindowSolver,
 };
 
 /// A share of a bound that the solver may take for nothing.
@@ -24,7 +24,7 @@ impl Program {
     fn duration(&self) -> f64 {
         self.with_window(|window| {
             let mut motion = self.guess();
-            let solved = SequentialSolver::new()
+            let solved = ScpSolver::new()
                 .solve(window, &mut motion, &mut Budget::solves(8))
                 .unwrap();
             check(window, &motion);
@@ -46,7 +46,7 @@ impl Program {
             .points
             .windows(2)
             .zip(&self.durations)
-            .map(|(ends, duration)| Segment {
+            .map(|(ends, duration)| WindowSegment {
                 start: Vector::from(ends[0]),
                 end: Vector::from(ends[1]),
                 tolerance: self.tolerance,
@@ -192,7 +192,7 @@ fn twice_as_fast_takes_half_the_time() {
 #[test]
 fn a_solver_used_before_gives_the_same_bits_and_allocates_nothing() {
     let program = two_bends(0.02);
-    let mut solver = SequentialSolver::new();
+    let mut solver = ScpSolver::new();
     let mut first = program.guess();
     program
         .with_window(|window| solver.solve(window, &mut first, &mut Budget::solves(8)))

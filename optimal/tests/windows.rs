@@ -15,7 +15,7 @@ use toolglide_kinematics::{
     AxisLimits, Feedrate, Limits, MotionPlanner, Move, Plan, Tolerance, Toolpath, Trajectory,
     Vector,
 };
-use toolglide_optimal::{SequentialSolver, Settings, TimeOptimal, plan_with};
+use toolglide_optimal::{ScpSolver, Settings, TimeOptimal, plan_with};
 use toolglide_verify::verify;
 
 fn judged<const N: usize>(points: &[Vector<N>], tolerance: f64, limits: Limits<N>) -> Plan<N> {
@@ -60,7 +60,7 @@ fn both_solvers_find_the_same_motion() {
     )
     .unwrap();
     let (general, _) = run(Conic::default(), &path, limits);
-    let (own, _) = run(SequentialSolver::new(), &path, limits);
+    let (own, _) = run(ScpSolver::new(), &path, limits);
     let ratio = own.duration() / general.duration();
     assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
 }
@@ -77,8 +77,8 @@ fn the_middle_of_long_moves_takes_no_windows_and_the_faster_motion_may_change_th
         Toolpath::from_points(&points, feedrate, Tolerance::new(0.05).unwrap()).unwrap()
     };
     let (near, far) = (square(40.0), square(4000.0));
-    let (short, few) = run(SequentialSolver::new(), &near, limits);
-    let (long, many) = run(SequentialSolver::new(), &far, limits);
+    let (short, few) = run(ScpSolver::new(), &near, limits);
+    let (long, many) = run(ScpSolver::new(), &far, limits);
     for (plan, path) in [(&short, &near), (&long, &far)] {
         let report = verify(plan, path, &limits);
         assert!(report.passes(), "{:#?}", report.examples);
@@ -119,7 +119,7 @@ fn feedrates_that_change_at_corners_are_kept_by_windows() {
             .unwrap();
     }
     let limits = Limits::uniform(500.0, 2500.0, 2e5).unwrap();
-    let (plan, tally) = run(SequentialSolver::new(), &path, limits);
+    let (plan, tally) = run(ScpSolver::new(), &path, limits);
     let report = verify(&plan, &path, &limits);
     assert!(report.passes(), "{tally:?} {:#?}", report.examples);
     assert!(tally.windows > 3 && tally.kept == 0, "{tally:?}");
@@ -180,7 +180,7 @@ fn pauses_that_follow_each_other_all_last() {
     ] {
         path.push(step).unwrap();
     }
-    let (plan, tally) = run(SequentialSolver::new(), &path, limits);
+    let (plan, tally) = run(ScpSolver::new(), &path, limits);
     let report = verify(&plan, &path, &limits);
     assert!(report.passes(), "{tally:?} {:#?}", report.examples);
     assert!(plan.duration() > 1.75, "{} s", plan.duration());
@@ -198,7 +198,7 @@ fn when_pieces_are_pulled_makes_no_difference() {
         Tolerance::new(0.05).unwrap(),
     )
     .unwrap();
-    let (plan, tally) = run(SequentialSolver::new(), &path, limits);
+    let (plan, tally) = run(ScpSolver::new(), &path, limits);
     assert!(tally.windows > 3, "{tally:?}");
     let mut planner = TimeOptimal::<2>::new(path.start(), &Settings::new(limits));
     for step in path.moves() {

@@ -4,10 +4,10 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use toolglide_kinematics::Tangential;
-use toolglide_profiles::{Connection, Feed, Jlap, Profile, State};
+use toolglide_kinematics::PathLimits;
+use toolglide_profiles::{Jlap, Profile, SCurve, SCurveBoundary, State};
 
-const LIMITS: Tangential = Tangential {
+const LIMITS: PathLimits = PathLimits {
     velocity: 100.0,
     acceleration: 2_500.0,
     jerk: 2e5,
@@ -22,14 +22,14 @@ fn share(number: u32, step: f64) -> f64 {
 }
 
 /// Straight moves as corners leave them: short and long, with and without acceleration at the ends.
-fn connections() -> Vec<(f64, Connection)> {
+fn connections() -> Vec<(f64, SCurveBoundary)> {
     let end = |number: u32, step: f64| {
         let acceleration = LIMITS.acceleration * (share(number, step) - 0.5).max(0.0);
         [60.0 * share(number, 1.7 * step), acceleration]
     };
     (0..PROBLEMS)
         .map(|number| {
-            let connection = Connection {
+            let connection = SCurveBoundary {
                 from: end(number, 0.618),
                 to: end(number, 0.754),
                 limits: LIMITS,
@@ -59,7 +59,7 @@ fn jlap(criterion: &mut Criterion) {
     group.bench_function("a straight move, solved", |bencher| {
         bencher.iter(|| {
             for (distance, connection) in &problems {
-                black_box(Feed::over(*distance, connection).unwrap());
+                black_box(SCurve::over(*distance, connection).unwrap());
             }
         });
     });
@@ -72,7 +72,7 @@ fn jlap(criterion: &mut Criterion) {
     });
     let feeds: Vec<_> = problems
         .iter()
-        .map(|(distance, connection)| Feed::over(*distance, connection).unwrap())
+        .map(|(distance, connection)| SCurve::over(*distance, connection).unwrap())
         .collect();
     group.bench_function("a state on a straight move", |bencher| {
         bencher.iter(|| {

@@ -6,29 +6,29 @@
 
 use crate::phase::Phase;
 use crate::profile::State;
-use crate::rise::Rise;
-use toolglide_kinematics::Tangential;
+use crate::rise::SpeedRamp;
+use toolglide_kinematics::PathLimits;
 use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK, SEARCH_PRECISION};
 
 /// Newton steps allowed to the search for the peak speed; bisection alone would need sixty, and
 /// three to five are usual.
-const MOST_STEPS: usize = 80;
+const MAX_STEPS: usize = 80;
 
 /// The two ends of a straight stretch and the limits along it; the distance is asked for later.
 ///
 /// An end has a speed and an acceleration, both not negative: at the start the motion is gaining
 /// speed, at the end it is losing speed at that rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Connection {
+pub struct SCurveBoundary {
     /// Speed and acceleration at the start.
     pub from: [f64; 2],
     /// Speed and deceleration at the end.
     pub to: [f64; 2],
     /// Limits along the stretch; the velocity is the feedrate where that is lower.
-    pub limits: Tangential,
+    pub limits: PathLimits,
 }
 
-impl Connection {
+impl SCurveBoundary {
     /// Distance used when the motion rises to `peak` and falls again at once.
     #[must_use]
     #[inline]
@@ -40,9 +40,9 @@ impl Connection {
     #[must_use]
     #[inline]
     pub fn least_peak(&self) -> f64 {
-        let Tangential { jerk, .. } = self.limits;
-        Rise::least_peak(self.from[0], self.from[1], jerk)
-            .max(Rise::least_peak(self.to[0], self.to[1], jerk))
+        let PathLimits { jerk, .. } = self.limits;
+        SpeedRamp::least_peak(self.from[0], self.from[1], jerk)
+            .max(SpeedRamp::least_peak(self.to[0], self.to[1], jerk))
     }
 
     /// The least distance over which the two ends can be joined.
@@ -61,18 +61,18 @@ impl Connection {
         Some(solution.rise.duration() + solution.cruise + solution.fall.duration())
     }
 
-    fn rise(&self, peak: f64) -> Rise {
-        let Tangential {
+    fn rise(&self, peak: f64) -> SpeedRamp {
+        let PathLimits {
             acceleration, jerk, ..
         } = self.limits;
-        Rise::to_peak(self.from[0], self.from[1], peak, acceleration, jerk)
+        SpeedRamp::to_peak(self.from[0], self.from[1], peak, acceleration, jerk)
     }
 
-    fn fall(&self, peak: f64) -> Rise {
-        let Tangential {
+    fn fall(&self, peak: f64) -> SpeedRamp {
+        let PathLimits {
             acceleration, jerk, ..
         } = self.limits;
-        Rise::to_peak(self.to[0], self.to[1], peak, acceleration, jerk)
+        SpeedRamp::to_peak(self.to[0], self.to[1], peak, acceleration, jerk)
     }
 
     /// The highest peak whose distance fits, to a relative precision; what is left over is cruised.
@@ -92,7 +92,7 @@ impl Connection {
         let (mut low_peak, mut high_peak) = (least, feedrate);
         let mut feedrate_tried = false;
         let mut guess = self.first_guess(distance, least, feedrate);
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if guess >= feedrate && !feedrate_tried && feedrate.is_finite() {
                 feedrate_tried = true;
                 guess = feedrate;
@@ -135,7 +135,7 @@ impl Connection {
     /// The peak of the motion that starts and ends at rest with the same middle, which is near.
     #[inline]
     fn first_guess(&self, distance: f64, least: f64, feedrate: f64) -> f64 {
-        let Tangential {
+        let PathLimits {
             acceleration, jerk, ..
         } = self.limits;
         // Without an acceleration limit a symmetric motion from rest obeys
@@ -179,9 +179,9 @@ pub(crate) struct Solution {
     /// Speed between rise and fall.
     pub(crate) peak: f64,
     /// From the start to the peak.
-    pub(crate) rise: Rise,
+    pub(crate) rise: SpeedRamp,
     /// From the end to the peak, backward in time.
-    pub(crate) fall: Rise,
+    pub(crate) fall: SpeedRamp,
     /// Distance that neither uses.
     left: f64,
     /// How long the peak is kept.
@@ -193,7 +193,7 @@ impl Solution {
     pub(crate) fn states(
         &self,
         distance: f64,
-        connection: &Connection,
+        connection: &SCurveBoundary,
         phases: &[Phase; 7],
     ) -> ([State; 7], State) {
         let mut starts = [State::default(); 7];

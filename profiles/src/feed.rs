@@ -2,11 +2,11 @@
 //!
 //! Source: section 3.3.1, equations 3.11 to 3.25. Not here: the search for the peak speed.
 
-use crate::connection::Connection;
+use crate::connection::SCurveBoundary;
 use crate::error::ProfileError;
 use crate::phase::{Phase, knots};
 use crate::profile::{Profile, State};
-use toolglide_kinematics::Tangential;
+use toolglide_kinematics::PathLimits;
 use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK};
 
 /// Share of the distance that the search for the peak speed may leave over; it is cruised, so that
@@ -27,7 +27,7 @@ const PEAK_PRECISION: f64 = 1e-12;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Feed {
+pub struct SCurve {
     phases: [Phase; 7],
     /// State at the beginning of each phase: those before the cruise from the start, those after it
     /// from the end, so that no rounding lasts.
@@ -36,7 +36,7 @@ pub struct Feed {
     knots: [f64; 8],
 }
 
-impl Feed {
+impl SCurve {
     /// The fastest motion that joins the ends of `connection` over exactly `distance`, never turning
     /// back, with non-negative acceleration before the peak and non-positive after it.
     ///
@@ -45,13 +45,13 @@ impl Feed {
     /// [`ProfileError::TooFast`] when an end leads beyond the feedrate,
     /// [`ProfileError::TooShort`] with the distance that would have sufficed, and
     /// [`ProfileError::NotClosed`] should the motion, integrated forward, miss its end.
-    pub fn over(distance: f64, connection: &Connection) -> Result<Self, ProfileError> {
+    pub fn over(distance: f64, connection: &SCurveBoundary) -> Result<Self, ProfileError> {
         check(distance, connection)?;
         Self::solve(distance, connection)
     }
 
-    fn solve(distance: f64, connection: &Connection) -> Result<Self, ProfileError> {
-        let Tangential { velocity, jerk, .. } = connection.limits;
+    fn solve(distance: f64, connection: &SCurveBoundary) -> Result<Self, ProfileError> {
+        let PathLimits { velocity, jerk, .. } = connection.limits;
         let peak = connection.least_peak();
         if peak > velocity * (1.0 + LIMIT_SLACK) {
             return Err(ProfileError::TooFast {
@@ -117,7 +117,7 @@ impl Feed {
     }
 }
 
-impl Profile for Feed {
+impl Profile for SCurve {
     fn duration(&self) -> f64 {
         self.knots[7]
     }
@@ -135,8 +135,8 @@ impl Profile for Feed {
     }
 }
 
-fn check(distance: f64, connection: &Connection) -> Result<(), ProfileError> {
-    let Tangential {
+fn check(distance: f64, connection: &SCurveBoundary) -> Result<(), ProfileError> {
+    let PathLimits {
         velocity,
         acceleration,
         jerk,
@@ -183,14 +183,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const LIMITS: Tangential = Tangential {
+    const LIMITS: PathLimits = PathLimits {
         velocity: 100.0,
         acceleration: 2500.0,
         jerk: 2e5,
     };
 
-    fn rest_to_rest(limits: Tangential) -> Connection {
-        Connection {
+    fn rest_to_rest(limits: PathLimits) -> SCurveBoundary {
+        SCurveBoundary {
             from: [0.0, 0.0],
             to: [0.0, 0.0],
             limits,
@@ -199,12 +199,12 @@ mod tests {
 
     #[test]
     fn a_short_move_from_rest_to_rest_is_four_jerk_phases() {
-        let limits = Tangential {
+        let limits = PathLimits {
             velocity: 1e3,
             acceleration: 1e9,
             jerk: 5e4,
         };
-        let feed = Feed::over(4.0, &rest_to_rest(limits)).unwrap();
+        let feed = SCurve::over(4.0, &rest_to_rest(limits)).unwrap();
         let closed_form = 4.0 * (4.0_f64 / (2.0 * 5e4)).cbrt();
         assert!(
             (feed.duration() / closed_form - 1.0).abs() < 1e-9,
@@ -215,20 +215,20 @@ mod tests {
 
     #[test]
     fn no_distance_between_rests_is_no_motion() {
-        let feed = Feed::over(0.0, &rest_to_rest(LIMITS)).unwrap();
+        let feed = SCurve::over(0.0, &rest_to_rest(LIMITS)).unwrap();
         assert!(feed.duration().abs() < 1e-15, "{feed:?}");
     }
 
     #[test]
     fn the_distance_that_just_suffices_is_accepted() {
-        let connection = Connection {
+        let connection = SCurveBoundary {
             from: [60.0, 1500.0],
             to: [20.0, 800.0],
             limits: LIMITS,
         };
         let least = connection.least_distance();
-        assert!(Feed::over(least, &connection).is_ok(), "{least}");
-        let refused = Feed::over(0.999 * least, &connection);
+        assert!(SCurve::over(least, &connection).is_ok(), "{least}");
+        let refused = SCurve::over(0.999 * least, &connection);
         assert!(
             matches!(refused, Err(ProfileError::TooShort { .. })),
             "{refused:?}"
@@ -237,12 +237,12 @@ mod tests {
 
     #[test]
     fn an_acceleration_that_cannot_run_out_below_the_feedrate_is_refused() {
-        let connection = Connection {
+        let connection = SCurveBoundary {
             from: [99.0, 2000.0],
             to: [0.0, 0.0],
             limits: LIMITS,
         };
-        let refused = Feed::over(100.0, &connection);
+        let refused = SCurve::over(100.0, &connection);
         assert!(
             matches!(refused, Err(ProfileError::TooFast { .. })),
             "{refused:?}"
@@ -253,16 +253,16 @@ mod tests {
     fn ends_that_are_not_numbers_are_refused() {
         for bad in [f64::NAN, f64::INFINITY, -1.0] {
             assert!(
-                Feed::over(bad, &rest_to_rest(LIMITS)).is_err(),
+                SCurve::over(bad, &rest_to_rest(LIMITS)).is_err(),
                 "distance {bad}"
             );
             let mut connection = rest_to_rest(LIMITS);
             connection.from[0] = bad;
-            assert!(Feed::over(1.0, &connection).is_err(), "start speed {bad}");
+            assert!(SCurve::over(1.0, &connection).is_err(), "start speed {bad}");
             let mut connection = rest_to_rest(LIMITS);
             connection.to[1] = bad;
             assert!(
-                Feed::over(1.0, &connection).is_err(),
+                SCurve::over(1.0, &connection).is_err(),
                 "end deceleration {bad}"
             );
         }
@@ -270,17 +270,17 @@ mod tests {
 
     #[test]
     fn a_long_slow_cruise_keeps_its_distance() {
-        let limits = Tangential {
+        let limits = PathLimits {
             velocity: 3.210_781_211_594_768,
             acceleration: 8_954.277_474_615_019,
             jerk: 173_840.144_019_451_7,
         };
-        let connection = Connection {
+        let connection = SCurveBoundary {
             from: [1.565_104_121_804_189, 500.0],
             to: [1.747_782_288_166_221, 490.0],
             limits,
         };
-        let feed = Feed::over(588.266_649_328_689_1, &connection).unwrap();
+        let feed = SCurve::over(588.266_649_328_689_1, &connection).unwrap();
         assert!(
             (feed.end().position - 588.266_649_328_689_1).abs() < 1e-12,
             "{feed:?}"
@@ -297,15 +297,15 @@ mod tests {
             feedrate in 1.0..1000.0_f64, most in 100.0..30_000.0_f64, ratio in 3.0..1000.0_f64,
             extra in prop_oneof![Just(0.0), 1e-9..1.0_f64, 1.0..1e4_f64],
         ) {
-            let limits = Tangential { velocity: feedrate, acceleration: most, jerk: most * ratio };
+            let limits = PathLimits { velocity: feedrate, acceleration: most, jerk: most * ratio };
             let end = |v: f64, a: f64| {
                 let room = feedrate * v;
                 let a = (a * most).min((2.0 * limits.jerk * room).sqrt());
                 [(room - 0.5 * a * a / limits.jerk).max(0.0), a]
             };
-            let connection = Connection { from: end(v[0], a[0]), to: end(v[1], a[1]), limits };
+            let connection = SCurveBoundary { from: end(v[0], a[0]), to: end(v[1], a[1]), limits };
             let distance = connection.least_distance() * (1.0 + extra) + extra * 1e-3;
-            let feed = Feed::over(distance, &connection).unwrap();
+            let feed = SCurve::over(distance, &connection).unwrap();
             for knot in feed.knots() {
                 let state = feed.at(*knot);
                 prop_assert!(state.velocity <= feedrate * (1.0 + 1e-9), "{state:?}");

@@ -2,7 +2,7 @@
 //!
 //! Source: section 2.2, equations 2.7 to 2.18, with the direction of the jerk taken from what the
 //! direct ramp leaves to do instead of from the difference of the speeds. Not here: a distance to
-//! keep, see [`crate::Feed`].
+//! keep, see [`crate::SCurve`].
 
 use crate::error::ProfileError;
 use crate::phase::{Phase, integrate, knots, state_at};

@@ -16,11 +16,11 @@ mod profile;
 mod rise;
 
 pub use blend::{BlendError, Blender, Boundary, CornerMotion};
-pub use connection::Connection;
+pub use connection::SCurveBoundary;
 pub use error::ProfileError;
-pub use feed::Feed;
+pub use feed::SCurve;
 pub use jlap::Jlap;
 pub use phase::Phase;
 pub use piecewise::{Piecewise, Polynomial};
 pub use profile::{Profile, State};
-pub use rise::Rise;
+pub use rise::SpeedRamp;

@@ -6,7 +6,7 @@
 /// A change from a speed and a non-negative acceleration to a higher speed at zero acceleration:
 /// jerk up, hold, jerk down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rise {
+pub struct SpeedRamp {
     /// Durations of the three phases.
     pub durations: [f64; 3],
     /// Acceleration while it is held.
@@ -17,10 +17,10 @@ pub struct Rise {
     speed_at_turn: f64,
 }
 
-impl Rise {
+impl SpeedRamp {
     /// The shortest rise from `speed` and `acceleration` to `peak`.
     ///
-    /// `peak` must be at least [`Rise::least_peak`], and `acceleration` between zero and
+    /// `peak` must be at least [`SpeedRamp::least_peak`], and `acceleration` between zero and
     /// `most_acceleration`; rounding beyond these is absorbed.
     #[must_use]
     #[inline]
@@ -98,7 +98,7 @@ mod tests {
     use crate::profile::State;
     use proptest::prelude::*;
 
-    fn integrated(speed: f64, acceleration: f64, rise: &Rise, jerk: f64) -> State {
+    fn integrated(speed: f64, acceleration: f64, rise: &SpeedRamp, jerk: f64) -> State {
         let [up, hold, down] = rise.durations;
         integrate(
             State::moving(speed, acceleration),
@@ -124,8 +124,8 @@ mod tests {
         ) {
             let jerk = most * ratio;
             let acceleration = share * most;
-            let peak = Rise::least_peak(speed, acceleration, jerk) + above;
-            let rise = Rise::to_peak(speed, acceleration, peak, most, jerk);
+            let peak = SpeedRamp::least_peak(speed, acceleration, jerk) + above;
+            let rise = SpeedRamp::to_peak(speed, acceleration, peak, most, jerk);
             let end = integrated(speed, acceleration, &rise, jerk);
             prop_assert!((end.velocity - peak).abs() < 1e-10 * (1.0 + peak), "{end:?}");
             prop_assert!(end.acceleration.abs() < 1e-9 * most, "{end:?}");
@@ -140,9 +140,9 @@ mod tests {
         ) {
             let jerk = most * ratio;
             let acceleration = share * most;
-            let peak = Rise::least_peak(speed, acceleration, jerk) + above;
+            let peak = SpeedRamp::least_peak(speed, acceleration, jerk) + above;
             let step = 1e-5 * above;
-            let at = |peak| Rise::to_peak(speed, acceleration, peak, most, jerk);
+            let at = |peak| SpeedRamp::to_peak(speed, acceleration, peak, most, jerk);
             let quotient = (at(peak + step).distance - at(peak - step).distance) / (2.0 * step);
             let slope = at(peak).distance_per_peak();
             prop_assert!((quotient / slope - 1.0).abs() < 1e-4, "{quotient} {slope}");

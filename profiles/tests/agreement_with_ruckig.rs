@@ -4,14 +4,14 @@
 //! there. Section 3 of our derivation compares the same way. Where the two differ the reason is
 //! counted: the other solver refuses an end that runs out exactly at the feedrate, or brakes first,
 //! because rounding brings it above; it turns back where the distance just suffices, because rounding
-//! makes it too short; and below a distance of [`LEAST_DISTANCE`] its own tolerance of 1e-8 mm no
+//! makes it too short; and below a distance of [`MIN_DISTANCE`] its own tolerance of 1e-8 mm no
 //! longer compares.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use rsruckig::prelude::{InputParameter, Ruckig, RuckigResult, ThrowErrorHandler, Trajectory};
-use toolglide_kinematics::Tangential;
-use toolglide_profiles::{Connection, Feed, Profile};
+use toolglide_kinematics::PathLimits;
+use toolglide_profiles::{Profile, SCurve, SCurveBoundary};
 
 /// How many boundary conditions are tried.
 const CASES: u32 = 10_000;
@@ -20,7 +20,7 @@ const CASES: u32 = 10_000;
 const SAME: f64 = 1e-6;
 
 /// Shortest distance that is compared, mm: a thousand times the position tolerance of the other.
-const LEAST_DISTANCE: f64 = 1e-5;
+const MIN_DISTANCE: f64 = 1e-5;
 
 /// A speed below this is backwards, mm/s.
 const BACKWARDS: f64 = -1e-9;
@@ -49,7 +49,7 @@ impl Random {
     }
 
     /// An end of a move: a speed, and an acceleration that runs out below the feedrate.
-    fn end(&mut self, limits: &Tangential) -> [f64; 2] {
+    fn end(&mut self, limits: &PathLimits) -> [f64; 2] {
         let peak = if self.one_in(10.0) {
             limits.velocity
         } else {
@@ -71,14 +71,14 @@ impl Random {
         [speed.max(0.0), acceleration]
     }
 
-    fn connection(&mut self) -> Connection {
+    fn connection(&mut self) -> SCurveBoundary {
         let acceleration = self.logarithmic(1e2, 3e4);
-        let limits = Tangential {
+        let limits = PathLimits {
             velocity: self.logarithmic(1.0, 1e3),
             acceleration,
             jerk: acceleration * self.logarithmic(3.0, 1e3),
         };
-        Connection {
+        SCurveBoundary {
             from: self.end(&limits),
             to: self.end(&limits),
             limits,
@@ -101,7 +101,7 @@ impl Random {
 }
 
 /// What the other solver finds: how long it takes and its least speed; `None` when it refuses.
-fn other(distance: f64, connection: &Connection) -> Option<(f64, f64)> {
+fn other(distance: f64, connection: &SCurveBoundary) -> Option<(f64, f64)> {
     let mut input = InputParameter::<1>::new(None);
     input.current_position[0] = 0.0;
     input.current_velocity[0] = connection.from[0];
@@ -132,7 +132,7 @@ fn other(distance: f64, connection: &Connection) -> Option<(f64, f64)> {
 
 /// Whether a feed keeps its limits at every knot, between which speed and acceleration are monotone
 /// but for the turn at the peak.
-fn is_legal(feed: &Feed, connection: &Connection) -> bool {
+fn is_legal(feed: &SCurve, connection: &SCurveBoundary) -> bool {
     let limits = &connection.limits;
     feed.knots().iter().all(|knot| {
         let state = feed.at(*knot);
@@ -169,7 +169,7 @@ fn no_feed_is_slower_than_the_general_solver_finds() {
     for case in 0..CASES {
         let connection = random.connection();
         let (distance, is_least) = random.distance(connection.least_distance());
-        let feed = Feed::over(distance, &connection)
+        let feed = SCurve::over(distance, &connection)
             .unwrap_or_else(|error| panic!("case {case}: {error}: {distance:?} {connection:?}"));
         assert!(
             is_legal(&feed, &connection),
@@ -179,7 +179,7 @@ fn no_feed_is_slower_than_the_general_solver_finds() {
         let kind = match other(distance, &connection) {
             None if at_feedrate => &mut count.refused_at_feedrate,
             None => &mut count.refused,
-            Some(_) if distance < LEAST_DISTANCE => &mut count.tiny,
+            Some(_) if distance < MIN_DISTANCE => &mut count.tiny,
             Some((_, slowest)) if slowest < BACKWARDS && is_least => &mut count.turns_back_at_least,
             Some((_, slowest)) if slowest < BACKWARDS => &mut count.turns_back,
             Some((duration, _)) => {

@@ -6,7 +6,7 @@ use crate::block::Block;
 use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
 use crate::error::{Fault, Notice, Remark};
-use crate::interpreter::{Lowering, MOST_MOVES};
+use crate::interpreter::{Interpreter, MAX_MOVES};
 use crate::text::place::Span;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Arc, Feedrate, Move, Vector};
@@ -14,7 +14,7 @@ use toolglide_kinematics::{Arc, Feedrate, Move, Vector};
 /// Dwells beyond this are said, s: a minute.
 const LONG_DWELL: f64 = 60.0;
 
-impl Lowering {
+impl Interpreter {
     /// A circular move about a centre in the plane XY of the program, without cutter compensation; which
     /// way is true for counter-clockwise.
     pub(crate) fn go_round(
@@ -24,8 +24,8 @@ impl Lowering {
         span: Span,
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
-        if moves.len() >= MOST_MOVES as usize {
-            let bound = MOST_MOVES;
+        if moves.len() >= MAX_MOVES as usize {
+            let bound = MAX_MOVES;
             let reason = MachiningError::TooManyMoves { bound };
             return Err(Fault::new(span, reason.into()));
         }

@@ -27,11 +27,11 @@ pub struct Settings {
 
 /// Lines of loops and subroutines that a program may run where nobody says otherwise: about a minute
 /// of reading.
-pub const MOST_STEPS: u64 = 100_000_000;
+pub const MAX_STEPS: u64 = 100_000_000;
 
 /// Lines of loops and subroutines that a program may run without a move where nobody says otherwise:
 /// half a second of reading.
-pub const MOST_STILL_STEPS: u64 = 500_000;
+pub const MAX_STILL_STEPS: u64 = 500_000;
 
 impl Settings {
     /// Strict reading for a machine of three axes that starts at the origin.
@@ -43,8 +43,8 @@ impl Settings {
             start: Vector::zeros(),
             axes: [true; 3],
             lenient: false,
-            steps: MOST_STEPS,
-            still_steps: MOST_STILL_STEPS,
+            steps: MAX_STEPS,
+            still_steps: MAX_STILL_STEPS,
         }
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{FILE, lenient, refusal_with, settings, try_read};
 use toolglide_kinematics::Vector;
-use toolglide_program::{MOST_WARNINGS, Notice, Program, Reason};
+use toolglide_program::{MAX_WARNINGS, Notice, Program, Reason};
 
 #[test]
 fn words_that_move_no_axis_become_warnings() {
@@ -85,10 +85,10 @@ fn axis_words_of_a_skipped_code_are_never_taken_for_a_motion() {
 
 #[test]
 fn the_number_of_warnings_kept_is_bounded() {
-    let text = "M107\n".repeat(MOST_WARNINGS + 7);
+    let text = "M107\n".repeat(MAX_WARNINGS + 7);
     let mut program = Program::new(text.as_bytes(), FILE, lenient());
     assert_eq!(program.by_ref().count(), 0, "moves");
-    assert_eq!(program.warnings().len(), MOST_WARNINGS, "kept");
+    assert_eq!(program.warnings().len(), MAX_WARNINGS, "kept");
     assert_eq!(program.more_warnings(), 7, "counted");
     let all_skipped = program
         .warnings()

@@ -6,7 +6,7 @@
 //! here: several corners, for which this grows beyond bounds.
 
 use crate::bound::relaxed;
-use crate::course::{Course, Hold, Join, Leg};
+use crate::course::{Course, Hold, Join, Segment};
 use crate::error::ReferenceError;
 use crate::grid::Grid;
 use toolglide_kinematics::Vector;
@@ -59,7 +59,7 @@ pub fn certify<const N: usize>(
         .feed
         .max(from.feed)
         .min(course.limits.velocity().norm());
-    let earliest = |leg: &Leg<N>| ((leg.length - reach) / (speed * upper)).clamp(0.0, 1.0);
+    let earliest = |leg: &Segment<N>| ((leg.length - reach) / (speed * upper)).clamp(0.0, 1.0);
     let (first, last) = (earliest(into), 1.0 - earliest(from));
     let mut open: Vec<(f64, f64, f64)> = Vec::new();
     let mut solved = 0;
@@ -105,7 +105,7 @@ pub fn certify<const N: usize>(
 /// none.
 fn within<const N: usize>(course: &Course<N>, upper: f64, speed: f64, low: f64, high: f64) -> f64 {
     let (into, from) = (&course.legs[0], &course.legs[1]);
-    let passing = Leg {
+    let passing = Segment {
         start: into.end,
         direction: Vector::zeros(),
         length: 0.0,

@@ -52,7 +52,7 @@ pub(crate) enum Join {
 
 /// A straight leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Leg<const N: usize> {
+pub(crate) struct Segment<const N: usize> {
     pub(crate) start: Vector<N>,
     pub(crate) end: Vector<N>,
     /// Unit direction; zero where the leg has no length.
@@ -72,7 +72,7 @@ pub(crate) struct Leg<const N: usize> {
     pub(crate) line: u32,
 }
 
-impl<const N: usize> Leg<N> {
+impl<const N: usize> Segment<N> {
     /// A leg along a move; `None` where the ends coincide.
     pub(crate) fn between(
         start: Vector<N>,
@@ -121,7 +121,7 @@ impl<const N: usize> Leg<N> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course<const N: usize> {
     pub(crate) limits: Limits<N>,
-    pub(crate) legs: Vec<Leg<N>>,
+    pub(crate) legs: Vec<Segment<N>>,
     /// One less than the legs.
     pub(crate) joins: Vec<Join>,
     /// Whether the motion must stay on the inner side at corners.
@@ -140,10 +140,10 @@ impl<const N: usize> Course<N> {
         feedrate: Feedrate,
         tolerance: Tolerance,
     ) -> Result<Self, ReferenceError> {
-        let mut legs: Vec<Leg<N>> = Vec::new();
+        let mut legs: Vec<Segment<N>> = Vec::new();
         for pair in points.windows(2) {
             let start = legs.last().map_or(pair[0], |leg| leg.end);
-            if let Some(mut leg) = Leg::between(start, pair[1], feedrate, tolerance, 0.0) {
+            if let Some(mut leg) = Segment::between(start, pair[1], feedrate, tolerance, 0.0) {
                 leg.serves = u32::try_from(legs.len()).unwrap_or(u32::MAX);
                 legs.push(leg);
             }
@@ -154,7 +154,7 @@ impl<const N: usize> Course<N> {
 
     pub(crate) fn new(
         limits: Limits<N>,
-        legs: Vec<Leg<N>>,
+        legs: Vec<Segment<N>>,
         joins: Vec<Join>,
     ) -> Result<Self, ReferenceError> {
         if legs.is_empty() {
@@ -208,7 +208,7 @@ impl<const N: usize> Course<N> {
             }
             let mut part = |from: f64, to: f64, hold| {
                 if to > from {
-                    legs.push(Leg {
+                    legs.push(Segment {
                         start: leg.start + leg.direction * from,
                         end: leg.start + leg.direction * to,
                         length: to - from,
@@ -234,7 +234,7 @@ impl<const N: usize> Course<N> {
     /// The first and the second half of two legs or more, with a rest between.
     pub(crate) fn halves(&self) -> (Self, Self) {
         let middle = self.legs.len() / 2;
-        let part = |legs: &[Leg<N>], joins: &[Join]| Self {
+        let part = |legs: &[Segment<N>], joins: &[Join]| Self {
             legs: legs.to_vec(),
             joins: joins.to_vec(),
             ..*self

@@ -27,7 +27,7 @@ const OUTSIDE: f64 = 1e-9;
 const PER_LEG: usize = 12;
 
 /// Intervals beyond which legs get fewer: a program of so many takes the solver about a second.
-const MOST_INTERVALS: usize = 1200;
+const MAX_INTERVALS: usize = 1200;
 
 /// Legs from which on durations are sought on a coarse grid first.
 const MANY_LEGS: usize = 4;
@@ -69,11 +69,11 @@ impl Settings {
     pub(crate) fn counts(&self, times: &[f64]) -> Vec<usize> {
         let legs = times.len().max(1);
         let wanted = self.intervals.max(PER_LEG * legs);
-        let intervals = wanted.min(self.intervals.max(MOST_INTERVALS));
+        let intervals = wanted.min(self.intervals.max(MAX_INTERVALS));
         share(
             times,
             intervals,
-            self.least.min((MOST_INTERVALS / legs).max(2)),
+            self.least.min((MAX_INTERVALS / legs).max(2)),
         )
     }
 

@@ -8,7 +8,7 @@
 use crate::course::Course;
 use crate::motion::Motion;
 use toolglide_kinematics::nalgebra::{Matrix3, Vector3};
-use toolglide_kinematics::{Piece, Plan, Sample, Serves, Vector};
+use toolglide_kinematics::{MoveRange, Piece, Plan, Sample, Vector};
 
 /// Intervals that are corrected together: few, so that residuals cannot add up; many, so that small
 /// changes of jerk suffice.
@@ -45,7 +45,7 @@ pub(crate) fn pieces<const N: usize>(
             states[k + 1].0
         };
         let serves = course.legs[leg].serves;
-        let serves = Serves {
+        let serves = MoveRange {
             first: serves,
             last: serves,
         };

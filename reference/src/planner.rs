@@ -10,7 +10,7 @@ use crate::sections::{Section, Sections};
 use crate::straight::{Straight, along};
 use std::collections::VecDeque;
 use toolglide_kinematics::{
-    Limits, MotionPlanner, Move, Piece, Plan, PlanError, Sample, Serves, Toolpath, Vector,
+    Limits, MotionPlanner, Move, MoveRange, Piece, Plan, PlanError, Sample, Toolpath, Vector,
 };
 
 /// Legs that are planned as one at most.
@@ -76,7 +76,7 @@ impl<const N: usize> ReferencePlanner<N> {
                 place,
                 serves,
             } => {
-                let serves = Serves::one(serves);
+                let serves = MoveRange::one(serves);
                 let still = Sample::at_rest(place);
                 self.pieces
                     .push_back(Piece::new(&still, duration, place, serves));

@@ -4,7 +4,7 @@
 //! independent. Arcs become chords; the tolerance of a chord is what its arc leaves for certain, or
 //! can have left at most. Not here: motion.
 
-use crate::course::{Course, Join, Leg};
+use crate::course::{Course, Join, Segment};
 use toolglide_kinematics::{
     Arc, Limits, Move, Path, PlanError, Tolerance, Toolpath, Vector, check_contact,
 };
@@ -34,7 +34,7 @@ pub struct Sections<const N: usize> {
     limits: Limits<N>,
     position: Vector<N>,
     tolerance: Option<Tolerance>,
-    legs: Vec<Leg<N>>,
+    legs: Vec<Segment<N>>,
     joins: Vec<Join>,
     index: u32,
 }
@@ -118,7 +118,7 @@ impl<const N: usize> Sections<N> {
 
     fn leg(&mut self, next: &Move<N>, index: u32, end: Vector<N>, spent: f64, smooth: bool) {
         let tolerance = next.tolerance();
-        let leg = Leg::between(self.position, end, next.feedrate(), tolerance, spent);
+        let leg = Segment::between(self.position, end, next.feedrate(), tolerance, spent);
         // A move without length moves nothing; what follows starts where the last leg ended.
         let Some(mut leg) = leg else {
             return;

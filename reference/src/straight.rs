@@ -3,8 +3,8 @@
 //! Source: the seven-phase law of motion, three cases of equation set 2.2. It starts the search, is
 //! what the convex program is tested against, and what is left when that fails. Not here: corners.
 
-use crate::course::{Course, Leg};
-use toolglide_kinematics::{Limits, Piece, Sample, Serves, Tangential};
+use crate::course::{Course, Segment};
+use toolglide_kinematics::{Limits, MoveRange, PathLimits, Piece, Sample};
 
 /// The phases of a motion from rest to rest: jerk `+ 0 - 0 - 0 +`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub(crate) struct Straight {
 
 impl Straight {
     /// The fastest over a length.
-    pub(crate) fn over(length: f64, limits: &Tangential) -> Self {
+    pub(crate) fn over(length: f64, limits: &PathLimits) -> Self {
         let (v, a, j) = (limits.velocity, limits.acceleration, limits.jerk);
         let knee = a * a / j;
         // The speed that is reached when there is no cruising.
@@ -49,7 +49,7 @@ impl Straight {
     }
 
     /// The pieces along a leg.
-    pub(crate) fn pieces<const N: usize>(&self, leg: &Leg<N>) -> Vec<Piece<N>> {
+    pub(crate) fn pieces<const N: usize>(&self, leg: &Segment<N>) -> Vec<Piece<N>> {
         let (t, hold, cruise) = (self.jerking, self.accelerating, self.cruising);
         let phases = [
             (t, 1.0),
@@ -60,7 +60,7 @@ impl Straight {
             (hold, 0.0),
             (t, 1.0),
         ];
-        let serves = Serves {
+        let serves = MoveRange {
             first: leg.serves,
             last: leg.serves,
         };
@@ -97,7 +97,7 @@ impl Straight {
 }
 
 /// What a motion along a leg may use of the limits.
-pub(crate) fn along<const N: usize>(limits: &Limits<N>, leg: &Leg<N>) -> Tangential {
+pub(crate) fn along<const N: usize>(limits: &Limits<N>, leg: &Segment<N>) -> PathLimits {
     let mut along = limits.along(&leg.direction);
     along.velocity = along.velocity.min(leg.feed);
     along
@@ -118,7 +118,7 @@ impl<const N: usize> Course<N> {
     #[must_use]
     pub fn straight_time(&self) -> f64 {
         let total = self.length();
-        let mut mean = Tangential {
+        let mut mean = PathLimits {
             velocity: 0.0,
             acceleration: 0.0,
             jerk: 0.0,
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn the_three_cases_have_their_closed_durations() {
-        let limits = Tangential {
+        let limits = PathLimits {
             velocity: 100.0,
             acceleration: 2500.0,
             jerk: 2e5,

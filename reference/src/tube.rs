@@ -4,7 +4,7 @@
 //! the length along the leg); where legs meet, within the tolerance of the corner. For cubic
 //! pieces the Bezier points keep the capsule too, so that all of the piece does. Not here: dynamics.
 
-use crate::course::{Hold, Join, Leg};
+use crate::course::{Hold, Join, Segment};
 use crate::formulation::{Formulation, Kind, Stated};
 use toolglide_kinematics::Vector;
 
@@ -76,7 +76,7 @@ impl<const N: usize> Tube<'_, '_, N> {
             .collect()
     }
 
-    fn radius(&self, node: usize, leg: &Leg<N>) -> f64 {
+    fn radius(&self, node: usize, leg: &Segment<N>) -> f64 {
         let needed = self.formulation.room.and_then(|room| room.nodes.get(node));
         match self.formulation.kind {
             Kind::Relaxed => needed.map_or(leg.outer, |&needed| leg.outer.max(needed)),
@@ -133,7 +133,7 @@ impl<const N: usize> Tube<'_, '_, N> {
         }
     }
 
-    fn capsule(&mut self, leg: &Leg<N>, radius: f64, point: &Point) {
+    fn capsule(&mut self, leg: &Segment<N>, radius: f64, point: &Point) {
         let origin = self.stated.scales.origin;
         let rows = &mut self.stated.rows;
         let along = rows.columns(1);

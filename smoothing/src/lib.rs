@@ -19,7 +19,7 @@ mod stretch;
 
 pub use bezier::{BezierSmoothing, plan_bezier};
 pub use corner::interrupted::Interrupted;
-pub use corner::shape::{Form, Part, Turn, TurnShape};
+pub use corner::shape::{BlendShape, CornerBlend, Form, Part};
 pub use corner::stop_start::StopStart;
 pub use corner::uninterrupted::Uninterrupted;
 pub use method::{Method, Settings};

@@ -10,7 +10,8 @@ use crate::section::Sections;
 use crate::segment_merger::Vertex;
 use crate::stretch::{LONGEST_ARC, Stretches};
 use toolglide_kinematics::{
-    Arc, Intake, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath, Vector,
+    Arc, MotionPlanner, Move, MoveRange, Path, PathCursor, Pause, Piece, Plan, PlanError, Toolpath,
+    Vector,
 };
 
 /// Plans kinematic corner smoothing while the path is being read.
@@ -31,7 +32,7 @@ use toolglide_kinematics::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct KinematicSmoothing<const N: usize> {
-    intake: Intake<N>,
+    intake: PathCursor<N>,
     stops: bool,
     arc: Option<(Chords<N>, Move<N>, u32)>,
     route: Route<N>,
@@ -50,7 +51,7 @@ impl<const N: usize> KinematicSmoothing<N> {
     #[must_use]
     pub fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
-            intake: Intake::new(start),
+            intake: PathCursor::new(start),
             stops: settings.method == Method::ExactStop,
             arc: None,
             route: match settings.method {
@@ -100,7 +101,7 @@ fn vertex_of<const N: usize>(
         bulge,
         feedrate: step.feedrate().speed(),
         tolerance: step.tolerance(),
-        serves: Serves::one(index),
+        serves: MoveRange::one(index),
         next: 0,
     }
 }
@@ -212,7 +213,7 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
             Path::Dwell { duration } => {
                 self.route.dwell(Pause {
                     duration: *duration,
-                    serves: Serves::one(index),
+                    serves: MoveRange::one(index),
                     end: self.intake.end(),
                 });
             }

@@ -2,24 +2,24 @@
 //!
 //! Source: the straight moves of section 3.3. Not here: how it comes about, see the merger.
 
-use toolglide_kinematics::{Pause, Serves, Tangential, Tolerance, Vector};
+use toolglide_kinematics::{MoveRange, PathLimits, Pause, Tolerance, Vector};
 
 /// A straight stretch of path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Leg<const N: usize> {
+pub(crate) struct Segment<const N: usize> {
     pub(crate) start: Vector<N>,
     pub(crate) end: Vector<N>,
     pub(crate) direction: Vector<N>,
     pub(crate) length: f64,
     /// Limits along the leg; the velocity is the feedrate where that is lower.
-    pub(crate) limits: Tangential,
+    pub(crate) limits: PathLimits,
     /// Largest speed of the moves that it serves.
     pub(crate) feedrate: f64,
     /// How far the motion may be from the moves that it serves.
     pub(crate) tolerance: Tolerance,
     /// How far those moves may lie from the leg.
     pub(crate) deviation: f64,
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
     /// Numbers of the first of the vertices that corners are made of instead of it, and of the first
     /// after them. All those of an arc belong to its first leg.
     pub(crate) vertices: [u64; 2],
@@ -31,7 +31,7 @@ pub(crate) struct Leg<const N: usize> {
     pub(crate) dwell: Option<Pause<N>>,
 }
 
-impl<const N: usize> Leg<N> {
+impl<const N: usize> Segment<N> {
     /// What merging has left of the tolerance.
     pub(crate) fn room(&self) -> Tolerance {
         self.tolerance.less(self.deviation)

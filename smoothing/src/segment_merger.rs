@@ -11,9 +11,9 @@
 //! moves together than for both added, and the reciprocals are norms of the move, so they are no
 //! larger for the straight line than for both moves added. Not here: motion.
 
-use crate::segment::Leg;
+use crate::segment::Segment;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
-use toolglide_kinematics::{Limits, Pause, Serves, Tolerance, Vector};
+use toolglide_kinematics::{Limits, MoveRange, Pause, Tolerance, Vector};
 
 /// Share of the tolerance within which merged moves count as straight: rounding of their ends.
 pub(crate) const STRAIGHT_SHARE: f64 = 1e-6;
@@ -40,7 +40,7 @@ const ALIKE: f64 = 1e-3;
 
 /// Most moves merged into one: bounds memory and the work a move. Where it cuts a straight line, there
 /// is a corner more than the tolerance asks for.
-pub(crate) const MOST_MERGED: usize = 1024;
+pub(crate) const MAX_MERGED: usize = 1024;
 
 /// The end of a straight stretch of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,13 +50,13 @@ pub(crate) struct Vertex<const N: usize> {
     pub(crate) bulge: f64,
     pub(crate) feedrate: f64,
     pub(crate) tolerance: Tolerance,
-    pub(crate) serves: Serves,
-    /// Number of the next one among the vertices that corners are made of, see [`Leg::vertices`].
+    pub(crate) serves: MoveRange,
+    /// Number of the next one among the vertices that corners are made of, see [`Segment::vertices`].
     pub(crate) next: u64,
 }
 
 /// The vertex at the end of a leg, which stands for all that the leg serves.
-pub(crate) fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
+pub(crate) fn vertex_of<const N: usize>(leg: &Segment<N>) -> Vertex<N> {
     Vertex {
         point: leg.end,
         bulge: leg.deviation,
@@ -69,7 +69,7 @@ pub(crate) fn vertex_of<const N: usize>(leg: &Leg<N>) -> Vertex<N> {
 
 /// Merges vertices into legs.
 #[derive(Clone, Debug)]
-pub(crate) struct Merger<const N: usize> {
+pub(crate) struct SegmentMerger<const N: usize> {
     limits: Limits<N>,
     share: f64,
     anchor: Vector<N>,
@@ -117,7 +117,7 @@ impl Bounds {
 /// Moves that led nowhere and wait for a leg to serve them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Carried<const N: usize> {
-    serves: Serves,
+    serves: MoveRange,
     /// How far they strayed.
     deviation: f64,
     /// How far the motion may be from them.
@@ -128,14 +128,14 @@ struct Carried<const N: usize> {
     next: u64,
 }
 
-impl<const N: usize> Merger<N> {
+impl<const N: usize> SegmentMerger<N> {
     /// A merger that may use a share of the tolerance.
     pub(crate) fn new(start: Vector<N>, limits: Limits<N>, share: f64) -> Self {
         Self {
             limits,
             share,
             anchor: start,
-            run: Vec::with_capacity(MOST_MERGED + 1),
+            run: Vec::with_capacity(MAX_MERGED + 1),
             bounds: None,
             deviation: 0.0,
             apart: 0.0,
@@ -168,7 +168,7 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Takes the next vertex; gives the leg that it completes.
-    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Leg<N>> {
+    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Segment<N>> {
         if self.run.is_empty() && (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
             self.carry(&vertex, vertex.serves, vertex.bulge);
             return None;
@@ -199,12 +199,12 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Completes the leg under way, if there is one.
-    pub(crate) fn flush(&mut self) -> Option<Leg<N>> {
+    pub(crate) fn flush(&mut self) -> Option<Segment<N>> {
         let (first, last) = (*self.run.first()?, *self.run.last()?);
         let bounds = self.bounds?;
         let span = last.point - self.anchor;
         let length = span.norm();
-        let mut serves = Serves {
+        let mut serves = MoveRange {
             first: first.serves.first,
             last: last.serves.last,
         };
@@ -226,7 +226,7 @@ impl<const N: usize> Merger<N> {
         let direction = span / length;
         let mut limits = self.limits.along(&direction);
         limits.velocity = limits.velocity.min(feedrate);
-        let leg = Leg {
+        let leg = Segment {
             start: self.anchor,
             end: last.point,
             direction,
@@ -280,7 +280,7 @@ impl<const N: usize> Merger<N> {
     }
 
     /// Keeps moves that end at `last`, where they began.
-    fn carry(&mut self, last: &Vertex<N>, serves: Serves, deviation: f64) {
+    fn carry(&mut self, last: &Vertex<N>, serves: MoveRange, deviation: f64) {
         let mut carried = Carried {
             serves,
             deviation,
@@ -380,7 +380,7 @@ impl<const N: usize> Merger<N> {
         let (Some(&before), Some(bounds)) = (self.run.last(), self.bounds) else {
             return Some(vertex.bulge);
         };
-        if self.run.len() >= MOST_MERGED {
+        if self.run.len() >= MAX_MERGED {
             return None;
         }
         let run = (before, bounds.slowest);

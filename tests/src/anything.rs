@@ -16,10 +16,10 @@ use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings}
 use toolglide_verify::{Judge, Report};
 
 /// Most pieces of the motion of one move, so that no planner goes on for ever.
-const MOST_PIECES: u64 = 20_000_000;
+const MAX_PIECES: u64 = 20_000_000;
 
 /// Most chords of an arc at its tolerance.
-const MOST_CHORDS: f64 = 10_000.0;
+const MAX_CHORDS: f64 = 10_000.0;
 
 /// Numbers on which float arithmetic ends, or a bound of a constructor lies.
 const EDGES: [f64; 26] = [
@@ -218,7 +218,7 @@ fn judged<const N: usize>(
             judge.observe(&piece);
             pieces += 1;
             assert!(
-                pieces < MOST_PIECES,
+                pieces < MAX_PIECES,
                 "{pieces} pieces, and no end\n{limits:?}\n{path:?}"
             );
         }
@@ -363,7 +363,7 @@ fn step<const N: usize>(
             let arc = Arc::about(at, end, center, plane, turned, turns)?;
             // Work goes with the chords, and so would the time of a draw.
             let chords = arc.sweep().abs() * (arc.bending() / (8.0 * tolerance.length())).sqrt();
-            let tolerance = if chords > MOST_CHORDS {
+            let tolerance = if chords > MAX_CHORDS {
                 Tolerance::new(1e-6 * arc.bending().max(1.0))?
             } else {
                 tolerance

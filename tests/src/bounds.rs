@@ -17,7 +17,7 @@ pub const SAME_DURATION: f64 = 1e-6;
 pub const PRINTED: f64 = 1e-3;
 
 /// Fewest plans that one run of the random paths judges.
-pub const FEWEST_PLANS: u32 = 2_000;
+pub const MIN_PLANS: u32 = 2_000;
 
 /// Longest planning of a course of some thirty moves: milliseconds are usual, and a search without
 /// bound once took minutes.

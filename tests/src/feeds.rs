@@ -43,7 +43,7 @@ enum Section {
 
 /// How the feedrate changes from move to move.
 #[derive(Clone, Debug)]
-enum Feed {
+enum SCurve {
     /// It stays.
     Constant,
     /// Two take turns, one faster by a share.
@@ -105,13 +105,13 @@ fn sections() -> impl Strategy<Value = Section> {
     ]
 }
 
-fn feeds() -> impl Strategy<Value = Feed> {
+fn feeds() -> impl Strategy<Value = SCurve> {
     prop_oneof![
-        2 => Just(Feed::Constant),
-        3 => prop_oneof![Just(5e-4), Just(0.01), 0.0..0.2_f64, 0.2..4.0_f64].prop_map(Feed::Alternate),
-        2 => (0.3..3.0_f64).prop_map(Feed::Ramp),
-        2 => prop::collection::vec(-1e-4..1e-4_f64, 7).prop_map(Feed::Jitter),
-        2 => (0..4_i32).prop_map(Feed::InverseTime),
+        2 => Just(SCurve::Constant),
+        3 => prop_oneof![Just(5e-4), Just(0.01), 0.0..0.2_f64, 0.2..4.0_f64].prop_map(SCurve::Alternate),
+        2 => (0.3..3.0_f64).prop_map(SCurve::Ramp),
+        2 => prop::collection::vec(-1e-4..1e-4_f64, 7).prop_map(SCurve::Jitter),
+        2 => (0..4_i32).prop_map(SCurve::InverseTime),
     ]
 }
 
@@ -147,15 +147,15 @@ fn end_of(leg: &Leg<AXES>) -> [f64; AXES] {
 
 /// The feedrate of a move that begins at a point.
 #[allow(clippy::cast_precision_loss, reason = "counts are small")]
-fn fed(feed: &Feed, index: usize, count: usize, leg: &Leg<AXES>, from: &[f64; AXES]) -> f64 {
+fn fed(feed: &SCurve, index: usize, count: usize, leg: &Leg<AXES>, from: &[f64; AXES]) -> f64 {
     let feedrate = leg.feedrate;
     match feed {
-        Feed::Constant => feedrate,
-        Feed::Alternate(more) if index % 2 == 1 => feedrate * (1.0 + more),
-        Feed::Alternate(_) => feedrate,
-        Feed::Ramp(factor) => feedrate * (1.0 + (factor - 1.0) * index as f64 / count as f64),
-        Feed::Jitter(shares) => feedrate * (1.0 + shares[index * index % shares.len()]),
-        Feed::InverseTime(digits) => {
+        SCurve::Constant => feedrate,
+        SCurve::Alternate(more) if index % 2 == 1 => feedrate * (1.0 + more),
+        SCurve::Alternate(_) => feedrate,
+        SCurve::Ramp(factor) => feedrate * (1.0 + (factor - 1.0) * index as f64 / count as f64),
+        SCurve::Jitter(shares) => feedrate * (1.0 + shares[index * index % shares.len()]),
+        SCurve::InverseTime(digits) => {
             let length = length_of(leg, from);
             let unit = 10.0_f64.powi(-digits);
             let inverse = (60.0 * feedrate / length / unit).round().max(1.0) * unit;

@@ -12,7 +12,7 @@ use toolglide_verify::{verify, verify_set_points};
 const CHAINS: [&[f64]; 4] = [&[], &[0.05, 0.03], &[0.02, 0.02], &[0.06, 0.04, 0.015]];
 
 /// Set-points that are judged of one motion.
-const MOST_SET_POINTS: f64 = 4000.0;
+const MAX_SET_POINTS: f64 = 4000.0;
 
 /// Plans a course behind one of the chains, with stops and without, and has it judged.
 ///
@@ -101,7 +101,7 @@ fn keeps_behind<const N: usize>(
 
 /// Set-points of a motion every millisecond, or fewer of a long one.
 fn set_points<const N: usize>(motion: &Plan<N>) -> Vec<(f64, Vector<N>)> {
-    let period = (motion.duration() / MOST_SET_POINTS).max(0.001);
+    let period = (motion.duration() / MAX_SET_POINTS).max(0.001);
     let mut points: Vec<_> = (0..)
         .map(|tick| f64::from(tick) * period)
         .take_while(|&time| time < motion.duration() - 0.5 * period)

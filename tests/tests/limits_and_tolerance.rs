@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::cell::Cell;
-use toolglide_tests::bounds::FEWEST_PLANS;
+use toolglide_tests::bounds::MIN_PLANS;
 use toolglide_tests::course::Course;
 use toolglide_tests::judged::judge;
 use toolglide_tests::run::try_all;
@@ -24,7 +24,7 @@ const CASES: u32 = 100;
 /// Every window with every method, which are four or more.
 const PLANS_A_CASE: u32 = 16;
 
-const _: () = assert!(9 * CASES * PLANS_A_CASE >= FEWEST_PLANS, "too few plans");
+const _: () = assert!(9 * CASES * PLANS_A_CASE >= MIN_PLANS, "too few plans");
 
 #[test]
 fn any_path_in_two_axes_is_planned_within_its_limits() {

@@ -20,7 +20,7 @@ const CASES: u32 = 4;
 const INTERVALS: usize = 80;
 
 /// Sections of more legs are left out: their bound takes too long.
-const MOST_LEGS: usize = 40;
+const MAX_LEGS: usize = 40;
 
 /// Rounding that a bound may have, relative.
 const ROUNDING: f64 = 1e-7;
@@ -52,7 +52,7 @@ fn hold<const N: usize>(
             let Section::Course(course) = section else {
                 continue;
             };
-            if course.legs() > MOST_LEGS {
+            if course.legs() > MAX_LEGS {
                 continue;
             }
             let motion = part(&plan, course);

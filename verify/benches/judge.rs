@@ -6,7 +6,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use toolglide_kinematics::{
-    Feedrate, Limits, Move, Piece, Plan, Sample, Serves, Tolerance, Toolpath, Trajectory, Vector,
+    Feedrate, Limits, Move, MoveRange, Piece, Plan, Sample, Tolerance, Toolpath, Trajectory, Vector,
 };
 use toolglide_verify::{verify, verify_set_points};
 
@@ -91,7 +91,12 @@ fn staircase(moves: u32, overlap: f64) -> (Toolpath<3>, Plan<3>) {
             acceleration: state.acceleration + jerk * t,
             jerk,
         };
-        plan.push(Piece::new(&state, t, next.position, Serves { first, last }));
+        plan.push(Piece::new(
+            &state,
+            t,
+            next.position,
+            MoveRange { first, last },
+        ));
         state = next;
     }
     (path, plan)

@@ -12,7 +12,7 @@ use toolglide_kinematics::Tolerance;
 use toolglide_program::{Language, Place, Poses, Program, ProgramError, Reason, Settings, Warning};
 
 /// Errors that are shown; of more, only the number is told.
-const MOST_ERRORS: usize = 100;
+const MAX_ERRORS: usize = 100;
 
 /// Reads a program, and tells what it holds and what is wrong with it.
 pub(crate) fn check(
@@ -134,7 +134,7 @@ impl Seen<'_> {
             other.again(remark.line);
             return;
         }
-        if self.survey.errors.len() >= MOST_ERRORS {
+        if self.survey.errors.len() >= MAX_ERRORS {
             self.survey.more_errors += 1;
             return;
         }

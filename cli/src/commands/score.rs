@@ -25,7 +25,7 @@ use toolglide_verify::verify;
 const CERTIFICATE: usize = 200;
 
 /// Legs of a section beyond which its optimum takes too long.
-const MOST_LEGS: usize = 600;
+const MAX_LEGS: usize = 600;
 
 /// Runs the command.
 pub(crate) fn score(
@@ -156,7 +156,7 @@ impl<const N: usize> Scorer<'_, N> {
         bar: &Steps,
     ) -> Result<Option<(Sums, Contrast<N>)>, CliError> {
         let sections = self.sections(window)?;
-        let too_large = |section: &Section<N>| matches!(section, Section::Course(course) if course.legs() > MOST_LEGS);
+        let too_large = |section: &Section<N>| matches!(section, Section::Course(course) if course.legs() > MAX_LEGS);
         if sections.iter().any(too_large) {
             return Ok(None);
         }

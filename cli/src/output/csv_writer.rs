@@ -196,7 +196,7 @@ pub(crate) fn number(text: &mut Vec<u8>, value: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toolglide_kinematics::{AxisLimits, Sample, Serves};
+    use toolglide_kinematics::{AxisLimits, MoveRange, Sample};
 
     fn axes() -> Vec<Axis> {
         ['X', 'Y']
@@ -223,7 +223,7 @@ mod tests {
         for &duration in durations {
             state.velocity = Vector::<2>::new(10.0, 0.0);
             let end = state.position + state.velocity * duration;
-            let piece = Piece::new(&state, duration, end, Serves { first: 0, last: 0 });
+            let piece = Piece::new(&state, duration, end, MoveRange { first: 0, last: 0 });
             rows.observe(&piece).unwrap();
             counted.observe(&piece).unwrap();
             state.position = end;

@@ -11,7 +11,7 @@ use toolglide_program::{Code, ProgramError, Warning};
 const MINUTE: f64 = 60.0;
 
 /// Lines that are told beside the first one that says the same.
-const MOST_LINES: usize = 10;
+const MAX_LINES: usize = 10;
 
 /// Points of an arc that its extent is taken from.
 const ARC_POINTS: u32 = 64;
@@ -87,7 +87,7 @@ impl Remark {
     /// The same again, on a line.
     pub(crate) fn again(&mut self, line: u64) {
         self.times += 1;
-        if self.more_lines.len() < MOST_LINES {
+        if self.more_lines.len() < MAX_LINES {
             self.more_lines.push(line);
         }
     }

@@ -19,7 +19,7 @@ const AFTER: usize = 96;
 const MOVES_AROUND: u32 = 40;
 
 /// Most pieces that are gathered for one corner.
-const MOST_PIECES: usize = 4096;
+const MAX_PIECES: usize = 4096;
 
 /// A corner must be sharper than the last one by this to take its place, rad; so that few are
 /// gathered for.
@@ -146,7 +146,7 @@ impl<const N: usize> CornerFinder<N> {
             self.best = Some(self.gathering.remove(0));
         }
         for corner in &mut self.gathering {
-            if serves.last + MOVES_AROUND >= corner.index && corner.pieces.len() < MOST_PIECES {
+            if serves.last + MOVES_AROUND >= corner.index && corner.pieces.len() < MAX_PIECES {
                 corner.pieces.push(*piece);
             }
         }
@@ -257,7 +257,7 @@ fn near_middle(near: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toolglide_kinematics::{Feedrate, Sample, Serves};
+    use toolglide_kinematics::{Feedrate, MoveRange, Sample};
 
     #[test]
     fn the_sharpest_corner_gathers_its_motion_and_reversals_do_not_count() {
@@ -274,7 +274,7 @@ mod tests {
             finder.expect(&line.from_line(index + 1));
             // The motion is known two moves later than the path.
             if let Some(first) = index.checked_sub(2) {
-                let serves = Serves { first, last: first };
+                let serves = MoveRange { first, last: first };
                 finder.observe(&Piece::new(&Sample::at_rest(at), 1.0, end, serves));
                 at = end;
             }

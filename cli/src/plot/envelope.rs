@@ -5,7 +5,7 @@
 //! peak is never lost however long the motion is.
 
 /// Most stretches that are kept: about two for every pixel of a chart.
-const MOST_BINS: usize = 2048;
+const MAX_BINS: usize = 2048;
 
 /// Width of a stretch at the beginning, s: the shortest motions have enough of them.
 const FIRST_WIDTH: f64 = 1e-6;
@@ -29,13 +29,13 @@ impl Envelope {
             curves,
             width: FIRST_WIDTH,
             filled: 0,
-            bins: vec![NOTHING; curves * MOST_BINS],
+            bins: vec![NOTHING; curves * MAX_BINS],
         }
     }
 
     /// Makes room for the time up to `end`, and gives the stretches that `start..end` touches.
     pub(crate) fn stretches(&mut self, start: f64, end: f64) -> std::ops::RangeInclusive<usize> {
-        while self.index(end) >= MOST_BINS {
+        while self.index(end) >= MAX_BINS {
             self.double();
         }
         let last = self.index(end);
@@ -88,7 +88,7 @@ impl Envelope {
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "times are not negative, and what is too large is compared with MOST_BINS"
+        reason = "times are not negative, and what is too large is compared with MAX_BINS"
     )]
     fn index(&self, time: f64) -> usize {
         (time / self.width) as usize
@@ -96,14 +96,14 @@ impl Envelope {
 
     fn double(&mut self) {
         let curves = self.curves;
-        for stretch in 0..MOST_BINS / 2 {
+        for stretch in 0..MAX_BINS / 2 {
             for curve in 0..curves {
                 let one = self.bins[2 * stretch * curves + curve];
                 let two = self.bins[(2 * stretch + 1) * curves + curve];
                 self.bins[stretch * curves + curve] = (one.0.min(two.0), one.1.max(two.1));
             }
         }
-        self.bins[MOST_BINS / 2 * curves..].fill(NOTHING);
+        self.bins[MAX_BINS / 2 * curves..].fill(NOTHING);
         self.filled = self.filled.div_ceil(2);
         self.width *= 2.0;
     }
@@ -126,7 +126,7 @@ mod tests {
         assert!((envelope.peak(0) - 9.0).abs() < 1e-15, "peak");
         assert!((envelope.peak(1) - 2.0).abs() < 1e-15, "magnitude");
         let count = envelope.curve(0).count();
-        assert!((MOST_BINS / 2..=MOST_BINS).contains(&count), "{count}");
+        assert!((MAX_BINS / 2..=MAX_BINS).contains(&count), "{count}");
         let (at, _, _) = envelope.curve(0).find(|bin| bin.2 > 8.0).unwrap();
         assert!(
             (envelope.begin(at) - 7.77).abs() <= envelope.width(),

@@ -200,12 +200,12 @@ impl Feeds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toolglide_kinematics::{Sample, Serves, Vector};
+    use toolglide_kinematics::{MoveRange, Sample, Vector};
 
     #[test]
     fn motions_of_different_lengths_share_one_scale_of_time() {
         let mut feeds = Feeds::new(vec!["one".to_owned(), "two".to_owned()]);
-        let serves = Serves { first: 0, last: 0 };
+        let serves = MoveRange { first: 0, last: 0 };
         for (motion, duration) in [(0, 1.0), (1, 3.0), (0, 1.0)] {
             let start = Sample {
                 position: Vector::<2>::zeros(),

@@ -12,7 +12,7 @@ const MARGIN: f64 = 0.05;
 const FLAT: f64 = 1e-3;
 
 /// Extent that is shown around a path of no extent, mm.
-const LEAST_EXTENT: f64 = 1.0;
+const MIN_EXTENT: f64 = 1.0;
 
 /// Widths of the line of a path, pixels.
 const THICKEST: f64 = 1.7;
@@ -38,7 +38,7 @@ pub(crate) fn draw<const N: usize>(
     let (motion_low, motion_high) = plot.motion.extent();
     let (low, high) = (low.inf(&motion_low), high.sup(&motion_high));
     let [across, upward] = projection(&(high - low));
-    let room = (MARGIN * (high - low).norm()).max(0.5 * LEAST_EXTENT * MARGIN);
+    let room = (MARGIN * (high - low).norm()).max(0.5 * MIN_EXTENT * MARGIN);
     let range = |axis: usize| (low[axis] - room, high[axis] + room);
     let chart = Chart {
         x,

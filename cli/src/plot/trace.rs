@@ -6,7 +6,7 @@
 use toolglide_kinematics::Vector;
 
 /// Most points that are kept.
-const MOST_POINTS: usize = 60_000;
+const MAX_POINTS: usize = 60_000;
 
 /// Spacing from which thinning starts, as a share of the extent: a fifth of a pixel.
 const FIRST_SHARE: f64 = 1.0 / 4000.0;
@@ -45,7 +45,7 @@ impl<const N: usize> Trace<N> {
             self.low = self.low.inf(&point);
             self.high = self.high.sup(&point);
             self.points.push((point, value));
-            if self.points.len() > MOST_POINTS {
+            if self.points.len() > MAX_POINTS {
                 self.thin();
             }
         }
@@ -102,7 +102,7 @@ mod tests {
                 angle,
             );
         }
-        assert!(trace.points().count() <= MOST_POINTS + 1, "bounded");
+        assert!(trace.points().count() <= MAX_POINTS + 1, "bounded");
         let (low, high) = trace.extent();
         assert!(
             (high - Vector::<2>::new(50.0, 100.0)).norm() < 0.1,

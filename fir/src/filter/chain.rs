@@ -9,7 +9,7 @@ use toolglide_kinematics::nalgebra::Complex;
 
 /// Most filters in a chain: a chain of eight has 256 corners in its response, and each filter more
 /// doubles them.
-pub const MOST_FILTERS: usize = 8;
+pub const MAX_FILTERS: usize = 8;
 
 /// Longest time constant, s: one period of 0.1 Hz, far below the modes of any machine. Positions are
 /// cubic in time, so that behind much longer filters they would lose nanometres.
@@ -53,16 +53,16 @@ impl FilterChain {
     /// A chain of moving averages of the given lengths in seconds, in any order.
     ///
     /// # Errors
-    /// [`FirError::FilterCount`] for none or for more than [`MOST_FILTERS`],
+    /// [`FirError::FilterCount`] for none or for more than [`MAX_FILTERS`],
     /// [`FirError::NotPositive`] for a time constant that is not positive and finite,
     /// [`FirError::TooShort`] for one below [`SHORTEST_TIME_CONSTANT`],
     /// [`FirError::TooLong`] for one above [`LONGEST_TIME_CONSTANT`].
     pub fn with_time_constants(time_constants: &[f64]) -> Result<Self, FirError> {
         let given = time_constants.len();
-        if !(1..=MOST_FILTERS).contains(&given) {
+        if !(1..=MAX_FILTERS).contains(&given) {
             return Err(FirError::FilterCount {
                 given,
-                most: MOST_FILTERS,
+                most: MAX_FILTERS,
             });
         }
         for &value in time_constants {

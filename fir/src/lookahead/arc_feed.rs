@@ -18,7 +18,7 @@ const EXACTLY: f64 = 1e-6;
 
 /// What limits the feedrate of an arc, whatever the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bend<const N: usize> {
+pub(crate) struct ArcFeed<const N: usize> {
     /// Largest share of the radius that an axis has.
     turning: Vector<N>,
     radius: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Bend<const N: usize> {
     shortest: f64,
 }
 
-impl<const N: usize> Bend<N> {
+impl<const N: usize> ArcFeed<N> {
     pub(crate) fn new(arc: &Arc<N>, chords: &Chords<N>, tolerance: f64) -> Self {
         let (start_radius, end_radius) = arc.radii();
         let radius = start_radius.max(end_radius);

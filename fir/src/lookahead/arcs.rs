@@ -4,13 +4,13 @@
 
 use crate::chords::Shape;
 use crate::filter::cubic::CubicChain;
-use crate::lookahead::arc_feed::Bend;
+use crate::lookahead::arc_feed::ArcFeed;
 use std::collections::VecDeque;
 use toolglide_kinematics::Vector;
 
 #[derive(Clone, Copy, Debug)]
 struct Entry<const N: usize> {
-    bend: Bend<N>,
+    bend: ArcFeed<N>,
     shape: Shape,
     feedrate: f64,
     /// Largest feedrate behind the chain in use.
@@ -36,7 +36,7 @@ impl<const N: usize> Arcs<N> {
     /// Keeps an arc and gives its number.
     pub(crate) fn push(
         &mut self,
-        (bend, shape): (Bend<N>, Shape),
+        (bend, shape): (ArcFeed<N>, Shape),
         feedrate: f64,
         chain: &CubicChain,
         change: &Vector<N>,

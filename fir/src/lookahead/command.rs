@@ -2,7 +2,7 @@
 //!
 //! Source: none. Not here: who decides it, and what becomes of it.
 
-use toolglide_kinematics::{Serves, Vector};
+use toolglide_kinematics::{MoveRange, Vector};
 
 /// What the look-ahead has decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub(crate) enum Command<const N: usize> {
     /// The motion comes to rest.
     Rest,
     /// A pause at rest, or moves that lead nowhere.
-    Pause { duration: f64, serves: Serves },
+    Pause { duration: f64, serves: MoveRange },
     /// From here on, two other filters; only at rest.
     Filters { long: f64, short: f64 },
 }
@@ -26,5 +26,5 @@ pub(crate) struct TimedPulse<const N: usize> {
     pub(crate) to: Vector<N>,
     /// That of the whole move: ends of what was cut are rounded.
     pub(crate) velocity: Vector<N>,
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
 }

@@ -28,7 +28,7 @@ use crate::chords::Shape;
 use crate::filter::cubic::CubicChain;
 use crate::pulse::Pulse;
 use crate::settings::{designed_for, largest_change};
-use arc_feed::Bend;
+use arc_feed::ArcFeed;
 use arcs::Arcs;
 use bound::Schedule;
 use command::{Command, TimedPulse};
@@ -160,7 +160,7 @@ impl<const N: usize> LookAhead<N> {
     }
 
     /// Takes the arc that the next pulses are part of.
-    pub(crate) fn begin_arc(&mut self, bend: Bend<N>, shape: Shape, feedrate: f64) -> u32 {
+    pub(crate) fn begin_arc(&mut self, bend: ArcFeed<N>, shape: Shape, feedrate: f64) -> u32 {
         self.arcs
             .push((bend, shape), feedrate, &self.chain, &self.change)
     }

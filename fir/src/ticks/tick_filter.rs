@@ -13,16 +13,16 @@ use std::ops::{AddAssign, Mul, Sub};
 use toolglide_kinematics::SamplePeriod;
 
 /// Largest position, units: a kilometre in nm. Commands beyond it are held there.
-const MOST_UNITS: i64 = 1 << 40;
+const MAX_UNITS: i64 = 1 << 40;
 
 /// Largest divisor with which the sums of such positions fit in 64 bits.
-const MOST_SHORT: i128 = 1 << 22;
+const MAX_SHORT: i128 = 1 << 22;
 
 /// Largest divisor with which they fit in 128 bits.
-const MOST_LONG: i128 = 1 << 86;
+const MAX_LONG: i128 = 1 << 86;
 
 /// Most ticks that all filters hold together: some seconds at 100 kHz.
-const MOST_TICKS: usize = 1 << 20;
+const MAX_TICKS: usize = 1 << 20;
 
 /// Moving averages of the commanded positions of `N` axes, one tick after the other.
 ///
@@ -101,14 +101,14 @@ impl<const N: usize> TickFilter<N> {
         for &length in &lengths {
             divisor = divisor.saturating_mul(length as i128);
         }
-        if ticks > MOST_TICKS || divisor > MOST_LONG {
+        if ticks > MAX_TICKS || divisor > MAX_LONG {
             return Err(FirError::TooManyTicks {
                 ticks,
-                most: MOST_TICKS,
+                most: MAX_TICKS,
             });
         }
         let start = start.map(within);
-        let sums = if divisor <= MOST_SHORT {
+        let sums = if divisor <= MAX_SHORT {
             let weights = weights.iter().map(|&weight| narrowed(weight)).collect();
             let divisor = narrowed(divisor);
             Sums::Short {
@@ -283,7 +283,7 @@ fn quotient(sum: i64, divisor: i64, reciprocal: i128) -> i64 {
 
 #[inline]
 fn within(position: i64) -> i64 {
-    position.clamp(-MOST_UNITS, MOST_UNITS)
+    position.clamp(-MAX_UNITS, MAX_UNITS)
 }
 
 #[inline]
@@ -308,7 +308,7 @@ fn ticks_of(time_constant: f64, period: SamplePeriod) -> Result<usize, FirError>
             time_constant,
         });
     }
-    Ok((ticks as usize).min(MOST_TICKS + 1))
+    Ok((ticks as usize).min(MAX_TICKS + 1))
 }
 
 #[cfg(test)]

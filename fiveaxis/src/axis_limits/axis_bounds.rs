@@ -9,12 +9,12 @@ use crate::axis_limits::chebyshev::{
     AT_NODES, NODES, bound, falls, last, slope, through_nodes, value,
 };
 use toolglide_kinematics::{
-    Axis, AxisVector, KinematicsError, MOST_AXES, MachineKinematics, PosePiece,
+    Axis, AxisVector, KinematicsError, MAX_AXES, MachineKinematics, PosePiece,
 };
 
 /// Shorter stretches are interpolated beyond their ends, s: the rounding of positions of a metre leaves
 /// less than 1 mm/s³ of a jerk, and a motion that changes within such a time is none for a machine.
-const LEAST_HALF: f64 = 3e-3;
+const MIN_HALF: f64 = 3e-3;
 
 /// A share of a limit below which the value itself does not matter.
 const FREE: f64 = 0.99;
@@ -86,7 +86,7 @@ pub(crate) fn worst(
         near: *near,
         worst: Worst::NONE,
     };
-    look.stretch([0.0, piece.duration()], LEAST_HALF)?;
+    look.stretch([0.0, piece.duration()], MIN_HALF)?;
     Ok(look.worst)
 }
 
@@ -101,8 +101,8 @@ struct Look<'a> {
 
 impl Look<'_> {
     fn halves(&mut self, [begin, middle, end]: [f64; 3]) -> Result<(), KinematicsError> {
-        self.stretch([begin, middle], LEAST_HALF)?;
-        self.stretch([middle, end], LEAST_HALF)
+        self.stretch([begin, middle], MIN_HALF)?;
+        self.stretch([middle, end], MIN_HALF)
     }
 
     /// Looks at a stretch as if it lasted twice `least` at least.
@@ -111,7 +111,7 @@ impl Look<'_> {
         let half = (0.5 * (end - begin)).max(least);
         let width = 0.5 * (end - begin) / half;
         let before = self.near;
-        let mut values = [[0.0; NODES]; MOST_AXES];
+        let mut values = [[0.0; NODES]; MAX_AXES];
         let mut near = before;
         for (node, at) in AT_NODES.iter().enumerate() {
             let time = middle + half * at;

@@ -12,7 +12,7 @@ use crate::axis_limits::slow_down::AIM;
 use crate::error::FiveAxisError;
 use crate::pose::block::PoseBlock;
 use toolglide_fir::FilterChain;
-use toolglide_kinematics::{Axis, AxisVector, MOST_AXES, MachineKinematics, Vector};
+use toolglide_kinematics::{Axis, AxisVector, MAX_AXES, MachineKinematics, Vector};
 
 /// Largest angle of the tool along one polynomial, rad, and largest length of the tip, mm.
 const ANGLE: f64 = 0.25;
@@ -35,7 +35,7 @@ pub(crate) type Slopes = [f64; 3];
 
 /// What is known of one axis along a block.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct AxisWay {
+pub(crate) struct AxisPath {
     /// First derivative at the start and at the end.
     pub(crate) ends: [f64; 2],
     /// What the derivatives are at most, at any share.
@@ -50,22 +50,22 @@ pub(crate) struct Part {
     /// Share at which it ends.
     pub(crate) end: f64,
     /// What the derivatives are at most, axis by axis.
-    pub(crate) most: [Slopes; MOST_AXES],
+    pub(crate) most: [Slopes; MAX_AXES],
 }
 
 /// The way of the axes along a block.
 #[derive(Clone, Debug)]
-pub(crate) struct Way {
+pub(crate) struct AxisPaths {
     /// Shares of the block in increasing order, and axis positions there.
     positions: Vec<(f64, AxisVector)>,
-    axes: Vec<AxisWay>,
+    axes: Vec<AxisPath>,
     /// Parts of the block, where it has more than one.
     pub(crate) parts: Vec<Part>,
     /// Whether the polynomials are near enough.
     known: bool,
 }
 
-impl Way {
+impl AxisPaths {
     /// The way of a machine along a block from axis positions near `at`.
     pub(crate) fn along(
         block: &PoseBlock,
@@ -78,7 +78,7 @@ impl Way {
             .clamp(1.0, MOST);
         let mut way = Self {
             positions: Vec::with_capacity(STATIONS),
-            axes: vec![AxisWay::default(); machine.axes().len()],
+            axes: vec![AxisPath::default(); machine.axes().len()],
             parts: Vec::new(),
             known: true,
         };
@@ -102,7 +102,7 @@ impl Way {
         let count = self.positions.len();
         let first = *self.last();
         let mut near = first;
-        let mut values = [[0.0; STATIONS]; MOST_AXES];
+        let mut values = [[0.0; STATIONS]; MAX_AXES];
         let mut refused = None;
         for (station, at) in AT_STATIONS.iter().enumerate().skip(1) {
             let share = if station + 1 == STATIONS {
@@ -124,7 +124,7 @@ impl Way {
             }
         }
         let axes = first.len();
-        let mut series = [[0.0; STATIONS]; MOST_AXES];
+        let mut series = [[0.0; STATIONS]; MAX_AXES];
         let mut resolved = refused.is_none();
         for (series, values) in series.iter_mut().zip(&values[..axes]) {
             *series = through_stations(values);
@@ -140,7 +140,7 @@ impl Way {
             return Err(reason);
         }
         self.known &= resolved;
-        let mut most = [[0.0; 3]; MOST_AXES];
+        let mut most = [[0.0; 3]; MAX_AXES];
         for (axis, series) in series[..axes].iter().enumerate() {
             most[axis] = self.learn(axis, series, [begin, end]);
         }
@@ -206,7 +206,7 @@ impl Way {
     }
 
     /// What is known of an axis, where the polynomials are near enough.
-    pub(crate) fn known(&self) -> Option<&[AxisWay]> {
+    pub(crate) fn known(&self) -> Option<&[AxisPath]> {
         self.known.then_some(self.axes.as_slice())
     }
 

@@ -3,7 +3,7 @@
 //! Source: ours. Beside a pole an axis turns half around while the tool turns by a few thousandths; without a
 //! cut the whole block would be as slow. Not here: how slow, see `relax`.
 
-use crate::axis_limits::axis_path::Way;
+use crate::axis_limits::axis_path::AxisPaths;
 use crate::pose::block::PoseBlock;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::Axis;
@@ -17,7 +17,7 @@ const ALIKE: f64 = 2.0;
 /// Shortest duration of what is cut off, as a share of the delay of the chain.
 const SHORTEST_CUT: f64 = 0.25;
 
-impl Way {
+impl AxisPaths {
     /// Shares at which a block of a given duration is better cut, because a part of it, as beside a pole,
     /// must be much slower than the rest.
     pub(crate) fn cuts(&self, axes: &[Axis], asked: f64, chain: &FilterChain) -> Vec<f64> {

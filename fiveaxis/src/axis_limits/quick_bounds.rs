@@ -6,12 +6,12 @@
 //! is needed. Not here: more than two blocks at once, see `follow`.
 
 use crate::axis_limits::axis_bounds::Worst;
-use crate::axis_limits::axis_path::{AxisWay, Way};
+use crate::axis_limits::axis_path::{AxisPath, AxisPaths};
 use crate::error::FiveAxisError;
 use crate::pose::block::PoseBlock;
 use crate::pose::swing::{RotarySwing, Swing};
 use toolglide_kinematics::{
-    Axis, AxisVector, GreatCircle, MOST_AXES, MachineKinematics, ToolPose, Vector, angle_between,
+    Axis, AxisVector, GreatCircle, MAX_AXES, MachineKinematics, ToolPose, Vector, angle_between,
     turned,
 };
 
@@ -33,7 +33,7 @@ const STRICTER: f64 = 12.5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mixed {
     /// The mixed second derivative of every axis for shares of 1.
-    axes: [f64; MOST_AXES],
+    axes: [f64; MAX_AXES],
     /// Angle by which each block turns the tool, as a share of the angle to the pole at the corner.
     turns: [f64; 2],
 }
@@ -42,7 +42,7 @@ pub(crate) struct Mixed {
 /// done.
 pub(crate) fn mixed(
     [before, after]: [&PoseBlock; 2],
-    [way_before, way_after]: [&Way; 2],
+    [way_before, way_after]: [&AxisPaths; 2],
     machine: &dyn MachineKinematics,
 ) -> Result<Option<Mixed>, FiveAxisError> {
     if way_before.known().is_none() || way_after.known().is_none() {
@@ -53,7 +53,7 @@ pub(crate) fn mixed(
     let both = both([before, after], [lacking, done], machine, near)?;
     let one = before.axes(lacking, machine, near)?;
     let two = after.axes(done, machine, near)?;
-    let mut mixed = [0.0; MOST_AXES];
+    let mut mixed = [0.0; MAX_AXES];
     for (axis, mixed) in mixed.iter_mut().enumerate().take(near.len()) {
         let alone = (one[axis] - near[axis]) + (two[axis] - near[axis]);
         *mixed = RESERVE * (both[axis] - near[axis] - alone).abs() / TOGETHER.powi(2);
@@ -144,7 +144,7 @@ impl Progress {
     }
 
     /// What the bends of a way add to the three derivatives at most, seen from its start or its `end`.
-    fn of_bends(&self, way: &AxisWay, end: usize) -> [f64; 3] {
+    fn of_bends(&self, way: &AxisPath, end: usize) -> [f64; 3] {
         let [rate, change, jolt] = self.most;
         let [_, second, third] = way.most;
         let away = self.away[end];
@@ -156,7 +156,7 @@ impl Progress {
     }
 
     /// What a way adds to the three derivatives at most, wherever on it.
-    fn anywhere(&self, way: &AxisWay) -> [f64; 3] {
+    fn anywhere(&self, way: &AxisPath) -> [f64; 3] {
         let [rate, change, jolt] = self.most;
         let [first, second, third] = way.most;
         [
@@ -168,7 +168,7 @@ impl Progress {
 }
 
 /// The limit that one block comes nearest to at most.
-pub(crate) fn alone(axes: &[Axis], ways: &[AxisWay], progress: Progress, half: f64) -> Worst {
+pub(crate) fn alone(axes: &[Axis], ways: &[AxisPath], progress: Progress, half: f64) -> Worst {
     let mut worst = Worst::NONE;
     for (axis, (limits, way)) in axes.iter().zip(ways).enumerate() {
         let anywhere = progress.anywhere(way);
@@ -187,7 +187,7 @@ pub(crate) fn alone(axes: &[Axis], ways: &[AxisWay], progress: Progress, half: f
 /// pole.
 pub(crate) fn together(
     axes: &[Axis],
-    ways: [&[AxisWay]; 2],
+    ways: [&[AxisPath]; 2],
     [before, after]: [Progress; 2],
     mixed: &Mixed,
     half: f64,

@@ -10,7 +10,7 @@ use crate::pose::swing::{RotarySwing, Swing};
 use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
 use toolglide_kinematics::{
-    Axis, AxisKind, AxisVector, CubicInTime, PosePiece, RotaryPiece, Sample, Serves, ToolPiece,
+    Axis, AxisKind, AxisVector, CubicInTime, MoveRange, PosePiece, RotaryPiece, Sample, ToolPiece,
     ToolPose, Turn, Vector,
 };
 
@@ -99,7 +99,7 @@ pub(crate) fn piece(
     let last = &blocks[newest];
     let over = steps[newest].command_end() + chain.total_delay() <= end + SAME_KNOT;
     let duration = end - begin;
-    let serves = Serves {
+    let serves = MoveRange {
         first: blocks[oldest].leg,
         last: last.leg,
     };
@@ -157,7 +157,7 @@ impl Rotary {
         (last, over): (&Swing, bool),
         end_tip: Vector<3>,
         duration: f64,
-        serves: Serves,
+        serves: MoveRange,
     ) -> PosePiece {
         let mut piece = RotaryPiece {
             tip,
@@ -184,7 +184,7 @@ pub(crate) fn rest(pose: ToolPose, duration: f64, leg: u32) -> PosePiece {
         turns: Vec::new(),
         end: pose,
         duration,
-        serves: Serves {
+        serves: MoveRange {
             first: leg,
             last: leg,
         },

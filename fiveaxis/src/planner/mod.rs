@@ -20,7 +20,7 @@ use usage::Usage;
 
 /// Most legs of a stretch: a longer one is planned in parts that rest in between, so that memory is
 /// bounded. A rest every four thousand moves costs less than a ten-thousandth of the time.
-const MOST_LEGS: usize = 4096;
+const MAX_LEGS: usize = 4096;
 
 /// Slower than this factor is worth a word.
 const NOTABLE: f64 = 1.001;
@@ -122,7 +122,7 @@ impl<'m> PosePlanner<'m> {
         }
         let stops = leg.stop;
         self.pending.push((index, leg));
-        if stops || self.pending.len() >= MOST_LEGS {
+        if stops || self.pending.len() >= MAX_LEGS {
             self.plan()?;
         }
         Ok(())

@@ -3,7 +3,7 @@
 //! Source: ours. Not here: which chain, and when the blocks are.
 
 use crate::axis_limits::axis_bounds::Worst;
-use crate::axis_limits::axis_path::Way;
+use crate::axis_limits::axis_path::AxisPaths;
 use crate::error::FiveAxisError;
 use crate::pose::block::PoseBlock;
 use crate::settings::PoseSettings;
@@ -16,7 +16,7 @@ use toolglide_kinematics::{Axis, MachineKinematics};
 /// was asked for.
 pub(super) struct Section {
     pub(super) block: PoseBlock,
-    pub(super) way: Arc<Way>,
+    pub(super) way: Arc<AxisPaths>,
 }
 
 impl Section {
@@ -30,7 +30,7 @@ impl Section {
 #[derive(Default)]
 pub(super) struct Cut {
     pub(super) blocks: Vec<PoseBlock>,
-    pub(super) ways: Vec<Arc<Way>>,
+    pub(super) ways: Vec<Arc<AxisPaths>>,
     pub(super) asked: Vec<f64>,
     pub(super) met: Vec<Option<Worst>>,
 }
@@ -52,7 +52,7 @@ impl Cut {
             } else {
                 Vec::new()
             };
-            let slowest = |way: &Way| {
+            let slowest = |way: &AxisPaths| {
                 if keeps {
                     Some(way.least_duration(axes, chain))
                 } else {
@@ -67,7 +67,7 @@ impl Cut {
             let mut begin = 0.0;
             for end in cuts.into_iter().chain([1.0]) {
                 let part = block.part(begin, end);
-                let way = Way::along(&part, machine, &at)?;
+                let way = AxisPaths::along(&part, machine, &at)?;
                 at = *way.last();
                 let slowest = slowest(&way);
                 cut.take(part, Arc::new(way), slowest)?;
@@ -81,7 +81,7 @@ impl Cut {
     pub(super) fn take(
         &mut self,
         mut block: PoseBlock,
-        way: Arc<Way>,
+        way: Arc<AxisPaths>,
         slowest: Option<(f64, Worst)>,
     ) -> Result<(), FiveAxisError> {
         self.asked.push(block.duration);

@@ -6,7 +6,7 @@ use super::race::{Contender, Race};
 use super::row::Section;
 use super::{NOTABLE, PosePlanner, Slowdown};
 use crate::axis_limits::axis_bounds::Worst;
-use crate::axis_limits::axis_path::Way;
+use crate::axis_limits::axis_path::AxisPaths;
 use crate::error::FiveAxisError;
 use crate::pose::block::PoseBlock;
 use crate::pose::swing::weigh;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 use toolglide_kinematics::PoseLeg;
 
 /// A turn in place is commanded for at least this share of the delay of the chain, which takes the time.
-const LEAST_TURN: f64 = 0.01;
+const MIN_TURN: f64 = 0.01;
 
 impl PosePlanner<'_> {
     pub(super) fn plan_tool(&mut self, legs: &[(u32, PoseLeg)]) -> Result<(), FiveAxisError> {
@@ -28,7 +28,7 @@ impl PosePlanner<'_> {
         weigh(&mut blocks, self.machine)?;
         for block in blocks {
             if self.goes_straight() {
-                let way = Way::along(&block, self.machine, &self.at)?;
+                let way = AxisPaths::along(&block, self.machine, &self.at)?;
                 self.take(&mut row, block, way);
                 continue;
             }
@@ -41,7 +41,7 @@ impl PosePlanner<'_> {
         self.plan_row(row)
     }
 
-    fn take(&mut self, row: &mut Vec<Section>, block: PoseBlock, way: Way) {
+    fn take(&mut self, row: &mut Vec<Section>, block: PoseBlock, way: AxisPaths) {
         self.at = *way.last();
         let way = Arc::new(way);
         row.push(Section { block, way });
@@ -49,7 +49,11 @@ impl PosePlanner<'_> {
 
     /// The way along a block from where the axes are. Where one of them must turn at rest before, the row so
     /// far and that turn are planned.
-    fn way(&mut self, block: &PoseBlock, row: &mut Vec<Section>) -> Result<Way, FiveAxisError> {
+    fn way(
+        &mut self,
+        block: &PoseBlock,
+        row: &mut Vec<Section>,
+    ) -> Result<AxisPaths, FiveAxisError> {
         let spin = match Spin::before(block, self.machine, &self.at)? {
             (Some(way), _) => return Ok(way),
             (None, spin) => spin,
@@ -57,14 +61,14 @@ impl PosePlanner<'_> {
         if let Some(spin) = spin {
             self.plan_row(std::mem::take(row))?;
             for mut turn in spin.blocks(block, self.machine)? {
-                turn.duration = LEAST_TURN * self.settings.chain().total_delay();
-                let way = Way::along(&turn, self.machine, &self.at)?;
+                turn.duration = MIN_TURN * self.settings.chain().total_delay();
+                let way = AxisPaths::along(&turn, self.machine, &self.at)?;
                 let mut alone = Vec::new();
                 self.take(&mut alone, turn, way);
                 self.plan_row(alone)?;
             }
         }
-        Way::along(block, self.machine, &self.at)
+        AxisPaths::along(block, self.machine, &self.at)
     }
 
     /// Whether the axes go straight between the poses, whatever the tool does.

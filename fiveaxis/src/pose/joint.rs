@@ -11,7 +11,7 @@ use crate::output::pieces::scaled;
 use crate::pose::block::PoseBlock;
 use crate::timing::commanded_progress::Steps;
 use toolglide_fir::FilterChain;
-use toolglide_kinematics::{AxesPiece, Axis, AxisVector, CubicInTime, Serves, cubic_at};
+use toolglide_kinematics::{AxesPiece, Axis, AxisVector, CubicInTime, MoveRange, cubic_at};
 
 /// A straight move of all axes.
 #[derive(Clone, Copy, Debug)]
@@ -117,7 +117,7 @@ impl JointStretch<'_> {
             positions,
             end: reached,
             duration: end - begin,
-            serves: Serves {
+            serves: MoveRange {
                 first: self.blocks[blocks[0]].leg,
                 last: last.leg,
             },

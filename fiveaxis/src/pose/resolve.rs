@@ -15,7 +15,7 @@ use toolglide_kinematics::{
 
 /// The angle that a tool sweeps is added up over turns of the axes of so much, rad, or so many of them.
 const SWEPT: f64 = 0.01;
-const MOST_SWEPT: f64 = 4096.0;
+const MAX_SWEPT: f64 = 4096.0;
 
 /// Turns moves into legs, one after the other.
 pub struct Resolver<'m> {
@@ -221,7 +221,7 @@ impl<'m> Resolver<'m> {
             .zip(end.iter())
             .map(|(start, end)| (end - start).abs())
             .sum();
-        let parts = (turned / SWEPT).ceil().clamp(1.0, MOST_SWEPT);
+        let parts = (turned / SWEPT).ceil().clamp(1.0, MAX_SWEPT);
         let mut tool = self.machine.forward(start)?.orientation();
         let (mut swept, mut part) = (0.0, 1.0);
         while part <= parts {

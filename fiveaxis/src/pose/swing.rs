@@ -7,7 +7,7 @@
 use crate::error::FiveAxisError;
 use crate::pose::block::PoseBlock;
 use toolglide_kinematics::{
-    AxisKind, AxisVector, GreatCircle, KinematicsError, MOST_AXES, MachineKinematics,
+    AxisKind, AxisVector, GreatCircle, KinematicsError, MAX_AXES, MachineKinematics,
     OrientationTolerance, ToolPose,
 };
 
@@ -16,7 +16,7 @@ const FLOOR: f64 = 1.0 / OrientationTolerance::OF_AXIS;
 
 /// Between two looks at how far the axes swing the tool, they turn by no more, rad, or there are so many looks.
 const STEP: f64 = 0.02;
-const MOST_LOOKS: f64 = 256.0;
+const MAX_LOOKS: f64 = 256.0;
 
 /// Directions in which two axes swing the tool that are across each other but for rounding.
 const ACROSS: f64 = 1e-9;
@@ -36,7 +36,7 @@ pub struct RotarySwing {
     start: AxisVector,
     end: AxisVector,
     /// How much a radian of each axis counts.
-    weights: [f64; MOST_AXES],
+    weights: [f64; MAX_AXES],
 }
 
 impl Swing {
@@ -118,7 +118,7 @@ impl RotarySwing {
         Self {
             start: *start,
             end: *end,
-            weights: [1.0; MOST_AXES],
+            weights: [1.0; MAX_AXES],
         }
     }
 
@@ -185,7 +185,7 @@ pub(crate) fn weigh(
         .filter(|(_, axis)| axis.kind == AxisKind::Rotary)
         .map(|(index, _)| index)
         .collect();
-    let mut weights = [0.0_f64; MOST_AXES];
+    let mut weights = [0.0_f64; MAX_AXES];
     let mut crossing = false;
     for block in blocks.iter() {
         let Swing::Rotary(swing) = &block.turn else {
@@ -196,7 +196,7 @@ pub(crate) fn weigh(
             reason,
         };
         let turned: f64 = swing.spans().map(f64::abs).sum();
-        let looks = (turned / STEP).ceil().clamp(1.0, MOST_LOOKS);
+        let looks = (turned / STEP).ceil().clamp(1.0, MAX_LOOKS);
         // Between two looks, and as far as the motion may leave the way.
         let beyond = 0.5 * turned / looks + 2.0 * block.orientation_tolerance;
         let mut look = 0.0;

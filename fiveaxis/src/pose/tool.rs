@@ -3,7 +3,7 @@
 //! Source: ours. Not here: how much, see `relax`; the formulas of corners and timing.
 
 use crate::axis_limits::axis_bounds::{Worst, worst};
-use crate::axis_limits::axis_path::Way;
+use crate::axis_limits::axis_path::AxisPaths;
 use crate::axis_limits::quick_bounds::{Mixed, Progress, alone, mixed, together};
 use crate::axis_limits::slow_down::{AIM, Stretch};
 use crate::error::FiveAxisError;
@@ -18,11 +18,11 @@ use toolglide_fir::FilterChain;
 use toolglide_kinematics::{Axis, MachineKinematics};
 
 /// Factors by which a corner is taken more gently at once.
-const LEAST_EASING: f64 = 1.08;
-const MOST_EASING: f64 = 2.0;
+const MIN_EASING: f64 = 1.08;
+const MAX_EASING: f64 = 2.0;
 
 /// A corner taken more gently than this is a stop.
-const LEAST_SCALE: f64 = 0.05;
+const MIN_SCALE: f64 = 0.05;
 
 /// Blocks of tool motion between two rests, and the way of the axes along each.
 pub(crate) struct ToolStretch<'a> {
@@ -31,7 +31,7 @@ pub(crate) struct ToolStretch<'a> {
     chain: &'a FilterChain,
     method: PoseMethod,
     pub(crate) blocks: Vec<PoseBlock>,
-    pub(crate) ways: Vec<Arc<Way>>,
+    pub(crate) ways: Vec<Arc<AxisPaths>>,
     corners: Vec<PoseCorner>,
     /// How gently each corner is taken, as a share of what the tolerances allow.
     scales: Vec<f64>,
@@ -48,7 +48,7 @@ impl<'a> ToolStretch<'a> {
         machine: &'a dyn MachineKinematics,
         axes: &'a [Axis],
         (chain, method): (&'a FilterChain, PoseMethod),
-        (blocks, ways): (Vec<PoseBlock>, Vec<Arc<Way>>),
+        (blocks, ways): (Vec<PoseBlock>, Vec<Arc<AxisPaths>>),
         keeps_limits: bool,
     ) -> Result<Self, FiveAxisError> {
         let corners = corners(&blocks);
@@ -79,8 +79,8 @@ impl<'a> ToolStretch<'a> {
     fn eased(&self, scale: f64, worst: &Worst) -> f64 {
         // As long as two blocks overlap at all, their jerks add up.
         let adds_up = worst.order == 2 && self.method == PoseMethod::DwellControlled;
-        let eased = scale / worst.share.clamp(LEAST_EASING, MOST_EASING);
-        if adds_up || eased < LEAST_SCALE {
+        let eased = scale / worst.share.clamp(MIN_EASING, MAX_EASING);
+        if adds_up || eased < MIN_SCALE {
             0.0
         } else {
             eased
@@ -249,7 +249,7 @@ mod tests {
             number += step;
             let mut block = PoseBlock::of(&made, leg, 2.0).unwrap();
             block.duration = block.duration.max(0.05);
-            let way = Way::along(&block, machine, &at).unwrap();
+            let way = AxisPaths::along(&block, machine, &at).unwrap();
             at = *way.last();
             blocks.push(block);
             ways.push(Arc::new(way));

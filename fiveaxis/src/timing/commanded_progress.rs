@@ -7,12 +7,12 @@ use toolglide_fir::FilterChain;
 use toolglide_kinematics::CubicInTime;
 
 /// Most steps of a block: slow, fast, slow, and an end.
-const MOST_STEPS: usize = 4;
+const MAX_STEPS: usize = 4;
 
 /// Steps of the rate of progress of one block; progress goes from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Steps {
-    list: [(f64, f64); MOST_STEPS],
+    list: [(f64, f64); MAX_STEPS],
     count: usize,
 }
 
@@ -27,7 +27,7 @@ impl Steps {
 
     /// Adds a step: when, and by how much the rate changes, 1/s.
     pub(crate) fn push(&mut self, time: f64, change: f64) {
-        debug_assert!(self.count < MOST_STEPS, "a block has at most three pulses");
+        debug_assert!(self.count < MAX_STEPS, "a block has at most three pulses");
         self.list[self.count] = (time, change);
         self.count += 1;
     }

@@ -6,7 +6,7 @@
 
 use crate::axis_vector::AxisVector;
 use crate::machine::{KinematicsError, MachineKinematics};
-use crate::piece::Serves;
+use crate::piece::MoveRange;
 use crate::pose::great_circle::turned;
 use crate::pose::tool_pose::ToolPose;
 use crate::sample::Sample;
@@ -45,7 +45,7 @@ pub struct ToolPiece {
     /// How long it lasts, s.
     pub duration: f64,
     /// The moves that it follows.
-    pub serves: Serves,
+    pub serves: MoveRange,
 }
 
 impl ToolPiece {
@@ -82,7 +82,7 @@ pub struct AxesPiece {
     /// How long it lasts, s.
     pub duration: f64,
     /// The moves that it follows.
-    pub serves: Serves,
+    pub serves: MoveRange,
 }
 
 impl AxesPiece {
@@ -113,7 +113,7 @@ pub struct RotaryPiece {
     /// How long it lasts, s.
     pub duration: f64,
     /// The moves that it follows.
-    pub serves: Serves,
+    pub serves: MoveRange,
 }
 
 impl RotaryPiece {
@@ -205,7 +205,7 @@ impl PosePiece {
 
     /// The moves that it follows.
     #[must_use]
-    pub fn serves(&self) -> Serves {
+    pub fn serves(&self) -> MoveRange {
         match self {
             Self::Tool(piece) => piece.serves,
             Self::Rotary(piece) => piece.serves,

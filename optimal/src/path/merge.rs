@@ -8,15 +8,15 @@
 //! the ball is wide need not be crossed, so that such a ball gets half of the radius: then even its
 //! far side is near enough. Not here: motion.
 
-use toolglide_kinematics::numeric::{LEAST_SHARE, SHORTEST_LENGTH};
-use toolglide_kinematics::{Pause, Serves, Vector};
+use toolglide_kinematics::numeric::{MIN_SHARE, SHORTEST_LENGTH};
+use toolglide_kinematics::{MoveRange, Pause, Vector};
 
 /// Share of the tolerance that joining may use: the motion keeps three quarters of it for itself, and
 /// fine chords of a curve still become runs of some thirty.
 const RUN_SHARE: f64 = 0.25;
 
 /// Most vertices of a run: bounds memory and the work a vertex.
-const MOST_JOINED: usize = 160;
+const MAX_JOINED: usize = 160;
 
 /// The end of a straight stretch of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub(crate) struct Vertex<const N: usize> {
 
 /// A straight line that serves one or several moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Run<const N: usize> {
+pub(crate) struct Segment<const N: usize> {
     pub(crate) start: Vector<N>,
     pub(crate) end: Vector<N>,
     pub(crate) direction: Vector<N>,
@@ -41,13 +41,13 @@ pub(crate) struct Run<const N: usize> {
     pub(crate) tube: f64,
     /// Largest radius of the balls at its start and at its end, mm.
     pub(crate) balls: [f64; 2],
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
 }
 
 /// Moves that led nowhere and wait for a run to serve them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Carried<const N: usize> {
-    serves: Serves,
+    serves: MoveRange,
     /// How far they strayed.
     deviation: f64,
     tolerance: f64,
@@ -57,26 +57,26 @@ struct Carried<const N: usize> {
 
 /// Joins vertices into runs.
 #[derive(Clone, Debug)]
-pub(crate) struct Joiner<const N: usize> {
+pub(crate) struct SegmentMerger<const N: usize> {
     anchor: Vector<N>,
     members: Vec<Vertex<N>>,
     deviation: f64,
     carried: Option<Carried<N>>,
 }
 
-impl<const N: usize> Joiner<N> {
+impl<const N: usize> SegmentMerger<N> {
     /// A joiner of a path that begins at `start`.
     pub(crate) fn new(start: Vector<N>) -> Self {
         Self {
             anchor: start,
-            members: Vec::with_capacity(MOST_JOINED + 1),
+            members: Vec::with_capacity(MAX_JOINED + 1),
             deviation: 0.0,
             carried: None,
         }
     }
 
     /// Takes the next vertex; gives the run that it completes.
-    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Run<N>> {
+    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Segment<N>> {
         let mut run = None;
         if !self.members.is_empty() {
             if let Some(deviation) = self.deviation_with(&vertex) {
@@ -87,7 +87,7 @@ impl<const N: usize> Joiner<N> {
             run = self.flush();
         }
         if (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
-            let serves = Serves {
+            let serves = MoveRange {
                 first: vertex.index,
                 last: vertex.index,
             };
@@ -100,11 +100,11 @@ impl<const N: usize> Joiner<N> {
     }
 
     /// Completes the run under way, if there is one.
-    pub(crate) fn flush(&mut self) -> Option<Run<N>> {
+    pub(crate) fn flush(&mut self) -> Option<Segment<N>> {
         let (first, last) = (*self.members.first()?, *self.members.last()?);
         let span = last.point - self.anchor;
         let length = span.norm();
-        let mut serves = Serves {
+        let mut serves = MoveRange {
             first: first.index,
             last: last.index,
         };
@@ -120,7 +120,7 @@ impl<const N: usize> Joiner<N> {
             deviation = deviation.max(carried.deviation);
             tolerance = tolerance.min(carried.tolerance);
         }
-        let tube = (tolerance - deviation).max(tolerance * LEAST_SHARE);
+        let tube = (tolerance - deviation).max(tolerance * MIN_SHARE);
         let mut near_end = false;
         let skipped = self.members.len() - 1;
         for member in &self.members[..skipped] {
@@ -134,7 +134,7 @@ impl<const N: usize> Joiner<N> {
             return None;
         }
         let ball = |near: bool| if near { 0.5 * tube } else { tube };
-        let run = Run {
+        let run = Segment {
             start: self.anchor,
             end: last.point,
             direction: span / length,
@@ -163,7 +163,7 @@ impl<const N: usize> Joiner<N> {
         self.anchor
     }
 
-    fn carry(&mut self, last: &Vertex<N>, serves: Serves, deviation: f64) {
+    fn carry(&mut self, last: &Vertex<N>, serves: MoveRange, deviation: f64) {
         let mut carried = Carried {
             serves,
             deviation,
@@ -183,7 +183,7 @@ impl<const N: usize> Joiner<N> {
     fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
         let last = self.members.last()?;
         let same_feedrate = last.feedrate.to_bits() == vertex.feedrate.to_bits();
-        if self.members.len() >= MOST_JOINED || !same_feedrate {
+        if self.members.len() >= MAX_JOINED || !same_feedrate {
             return None;
         }
         let (mut tolerance, mut bulge) = (vertex.tolerance, vertex.bulge);
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn chords_of_a_gentle_curve_become_runs_that_use_a_quarter_of_the_tolerance() {
-        let mut joiner = Joiner::new(Vector::<2>::new(50.0, 0.0));
+        let mut joiner = SegmentMerger::new(Vector::<2>::new(50.0, 0.0));
         let mut runs = Vec::new();
         for index in 0..400_u32 {
             let angle = f64::from(index + 1) * 36e-6 * 20.0;
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn a_turn_a_change_of_feedrate_and_a_way_back_end_a_run() {
-        let mut joiner = Joiner::new(Vector::<2>::zeros());
+        let mut joiner = SegmentMerger::new(Vector::<2>::zeros());
         assert_eq!(joiner.push(vertex(1.0, 0.0, 0)), None);
         assert_eq!(joiner.push(vertex(2.0, 0.0, 1)), None);
         let turned = joiner.push(vertex(2.0, 1.0, 2));
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn vertices_near_the_end_of_a_run_halve_its_ball() {
-        let mut joiner = Joiner::new(Vector::<2>::zeros());
+        let mut joiner = SegmentMerger::new(Vector::<2>::zeros());
         for (index, x) in [0.002, 1.0].into_iter().enumerate() {
             joiner.push(vertex(x, 0.0, u32::try_from(index).unwrap()));
         }
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn moves_to_where_the_path_is_are_served_by_the_next_run() {
-        let mut joiner = Joiner::new(Vector::<2>::zeros());
+        let mut joiner = SegmentMerger::new(Vector::<2>::zeros());
         assert_eq!(joiner.push(vertex(0.0, 0.0, 0)), None);
         assert_eq!(joiner.push(vertex(1.0, 0.0, 1)), None);
         let run = joiner.flush().unwrap();

@@ -5,17 +5,17 @@
 //! long move is not planned in windows at all: there the feedrate holds on the line itself. Not here:
 //! windows.
 
-use crate::path::merge::Run;
-use toolglide_kinematics::{Limits, Serves, Tangential, Vector};
+use crate::path::merge::Segment;
+use toolglide_kinematics::{Limits, MoveRange, PathLimits, Vector};
 
 /// Longest time of a span that changes its speed, as a multiple of the interval.
 const SPAN_STEPS: f64 = 24.0;
 
 /// Fewest intervals of a span: with four it can be started and stopped at both ends.
-pub(crate) const FEWEST_STEPS: usize = 4;
+pub(crate) const MIN_STEPS: usize = 4;
 
 /// Most intervals of a span.
-pub(crate) const MOST_STEPS: usize = 60;
+pub(crate) const MAX_STEPS: usize = 60;
 
 /// Most intervals of a span that is travelled at constant speed.
 const STEADY_STEPS: usize = 6;
@@ -46,8 +46,8 @@ pub(crate) struct Span<const N: usize> {
     pub(crate) goes_on: bool,
     pub(crate) feedrate: f64,
     /// Limits along it; the velocity is the feedrate where that is lower.
-    pub(crate) limits: Tangential,
-    pub(crate) serves: Serves,
+    pub(crate) limits: PathLimits,
+    pub(crate) serves: MoveRange,
     /// Duration of an interval, s, where it is short.
     pub(crate) interval: f64,
     /// Time to stop from its feedrate, s.
@@ -62,10 +62,10 @@ pub(crate) struct Cruise<const N: usize> {
     pub(crate) start: Vector<N>,
     pub(crate) end: Vector<N>,
     pub(crate) direction: Vector<N>,
-    pub(crate) limits: Tangential,
+    pub(crate) limits: PathLimits,
     /// Speed at its start and at its end, mm/s.
     pub(crate) speed: f64,
-    pub(crate) serves: Serves,
+    pub(crate) serves: MoveRange,
 }
 
 /// What a run is cut into.
@@ -88,7 +88,7 @@ pub(crate) fn weakest<const N: usize>(limits: &Limits<N>) -> (f64, f64) {
 
 /// Cuts a run into spans and the middle of a long move.
 pub(crate) fn cut<const N: usize>(
-    run: &Run<N>,
+    run: &Segment<N>,
     limits: &Limits<N>,
     fineness: Fineness,
     mut take: impl FnMut(Part<N>),
@@ -142,11 +142,11 @@ pub(crate) fn cut<const N: usize>(
 }
 
 /// A run as one span.
-fn whole<const N: usize>(run: &Run<N>, limits: &Limits<N>, fineness: Fineness) -> Span<N> {
+fn whole<const N: usize>(run: &Segment<N>, limits: &Limits<N>, fineness: Fineness) -> Span<N> {
     let mut along = limits.along(&run.direction);
     along.velocity = along.velocity.min(run.feedrate);
     let (acceleration, jerk) = weakest(limits);
-    let weak = Tangential {
+    let weak = PathLimits {
         velocity: along.velocity,
         acceleration,
         jerk,
@@ -172,7 +172,7 @@ fn whole<const N: usize>(run: &Run<N>, limits: &Limits<N>, fineness: Fineness) -
 }
 
 /// The place so far along a run, mm; its very ends there and beyond.
-fn place<const N: usize>(run: &Run<N>, along: f64) -> Vector<N> {
+fn place<const N: usize>(run: &Segment<N>, along: f64) -> Vector<N> {
     if along <= 0.0 {
         run.start
     } else if along >= run.length {
@@ -205,7 +205,7 @@ fn parts(time: f64, interval: f64) -> usize {
 
 impl<const N: usize> Span<N> {
     /// The part of a run between two distances from its start, mm.
-    fn part(&self, run: &Run<N>, from: f64, to: f64) -> Part<N> {
+    fn part(&self, run: &Segment<N>, from: f64, to: f64) -> Part<N> {
         let last = to >= run.length;
         Part::Span(Self {
             start: place(run, from),
@@ -228,12 +228,12 @@ impl<const N: usize> Span<N> {
         reason = "clamped to a small range"
     )]
     pub(crate) fn steps_for(&self, time: f64, steady: bool) -> usize {
-        let most = if steady { STEADY_STEPS } else { MOST_STEPS };
+        let most = if steady { STEADY_STEPS } else { MAX_STEPS };
         let count = (time / self.interval).ceil();
-        if count > steps(FEWEST_STEPS) {
+        if count > steps(MIN_STEPS) {
             count.min(steps(most)) as usize
         } else {
-            FEWEST_STEPS
+            MIN_STEPS
         }
     }
 }

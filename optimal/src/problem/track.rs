@@ -4,7 +4,7 @@
 
 use super::{Problem, count};
 use crate::problem::constraints::{Disc, Tube};
-use crate::window::{Segment, WindowDefect};
+use crate::window::{WindowDefect, WindowSegment};
 use toolglide_kinematics::{Vector, vector::length_and_direction};
 
 /// So many intervals at each end of a segment have a tube with round ends.
@@ -30,10 +30,10 @@ impl<const N: usize> Problem<N> {
     pub(super) fn track(
         &self,
         index: usize,
-        segment: &Segment<N>,
-        [before, next]: [Option<&Segment<N>>; 2],
+        segment: &WindowSegment<N>,
+        [before, next]: [Option<&WindowSegment<N>>; 2],
     ) -> Result<Track<N>, WindowDefect> {
-        if segment.steps < Segment::<N>::FEWEST_STEPS {
+        if segment.steps < WindowSegment::<N>::MIN_STEPS {
             return Err(WindowDefect::TooFewSteps { segment: index });
         }
         let (length, direction) = length_and_direction(&segment.start, &segment.end)

@@ -22,7 +22,7 @@ const EXCESS_WEIGHT: f64 = 50.0;
 
 /// Share by which a duration may change at first; below the least the window is given up.
 const FIRST_TRUST: f64 = 0.4;
-const LEAST_TRUST: f64 = 1e-3;
+const MIN_TRUST: f64 = 1e-3;
 
 /// Share to which the trust falls at least where a motion cannot be restored.
 const RESTORED_TRUST: f64 = 0.02;
@@ -32,7 +32,7 @@ const RESTORED_TRUST: f64 = 0.02;
 const LEAVES: f64 = 0.5;
 
 /// A predicted gain below this share of the duration is not worth another problem.
-const LEAST_GAIN: f64 = 1e-3;
+const MIN_GAIN: f64 = 1e-3;
 
 /// Excess that counts as none: the caller leaves a margin of twice that.
 const ENOUGH: f64 = 1e-4;
@@ -129,7 +129,7 @@ const USABLE_MISS: f64 = 1e-6;
 /// # }
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct SequentialSolver<const N: usize> {
+pub struct ScpSolver<const N: usize> {
     problem: Problem<N>,
     interior: Interior<N>,
     durations: Vec<f64>,
@@ -156,7 +156,7 @@ struct Promise {
     excess: f64,
 }
 
-impl<const N: usize> SequentialSolver<N> {
+impl<const N: usize> ScpSolver<N> {
     /// A solver with an empty workspace.
     #[must_use]
     pub fn new() -> Self {
@@ -318,13 +318,13 @@ impl<const N: usize> SequentialSolver<N> {
             }
             let Some(promise) = self.shorten(trust, EXCESS_WEIGHT, gap) else {
                 trust *= 0.25;
-                if trust < LEAST_TRUST {
+                if trust < MIN_TRUST {
                     break;
                 }
                 continue;
             };
             gap = (GAP_SHARE * promise.gain.abs()).clamp(SHORTENED.gap, LARGEST_GAP);
-            let settled = promise.gain.abs() < LEAST_GAIN;
+            let settled = promise.gain.abs() < MIN_GAIN;
             let last = round == effort || !self.affords(2);
             if (settled && promise.excess < ENOUGH) || round % RESTORE_EVERY == 0 || last {
                 let excess = self.restore().unwrap_or(f64::INFINITY);
@@ -345,7 +345,7 @@ impl<const N: usize> SequentialSolver<N> {
     }
 }
 
-impl<const N: usize> WindowSolver<N> for SequentialSolver<N> {
+impl<const N: usize> WindowSolver<N> for ScpSolver<N> {
     fn solve(
         &mut self,
         window: &Window<'_, N>,
@@ -360,7 +360,7 @@ impl<const N: usize> WindowSolver<N> for SequentialSolver<N> {
     }
 }
 
-impl<const N: usize> SequentialSolver<N> {
+impl<const N: usize> ScpSolver<N> {
     /// Finds a motion through the window that has been loaded.
     fn find(&mut self, motion: &mut WindowMotion<N>) -> Result<Solved, Unsolved> {
         let mut excess = self.improve();

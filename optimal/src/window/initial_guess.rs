@@ -20,7 +20,7 @@ const STRAIGHT: f64 = 1e-9;
 const WIDE: f64 = 1e9;
 
 /// Least speed of a guess as a share of the feedrate, so that a start from rest takes a finite time.
-const LEAST_SPEED: f64 = 1e-3;
+const MIN_SPEED: f64 = 1e-3;
 
 /// Speed at which the mean acceleration of a change of speed is taken, as a share of the feedrate
 /// above the lower speed: a change by jerk alone takes longer than the acceleration alone would say.
@@ -98,7 +98,7 @@ impl Guess {
         let (acceleration, jerk) = weakest;
         let mean = |speed: f64, span: &Span<N>| {
             let at =
-                (speed + RISE_SPEED * span.limits.velocity).max(LEAST_SPEED * span.limits.velocity);
+                (speed + RISE_SPEED * span.limits.velocity).max(MIN_SPEED * span.limits.velocity);
             acceleration / (1.0 + acceleration * acceleration / (jerk * at))
         };
         self.speeds.clear();
@@ -121,7 +121,7 @@ impl Guess {
         let Some(last) = before else { return };
         // What comes after it is not known.
         self.steady.push(false);
-        let leave = if open { 1.0 } else { LEAST_SPEED };
+        let leave = if open { 1.0 } else { MIN_SPEED };
         self.speeds.push(leave * last.limits.velocity);
         for (index, span) in spans.clone().enumerate() {
             let from = self.speeds[index];

@@ -15,7 +15,7 @@ use toolglide_kinematics::{Limits, Vector};
 
 /// One straight piece of a window: the tube it may use and how finely its time is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment<const N: usize> {
+pub struct WindowSegment<const N: usize> {
     /// Where it starts, mm; the end of the segment before.
     pub start: Vector<N>,
     /// Where it ends, mm; not the start.
@@ -27,14 +27,14 @@ pub struct Segment<const N: usize> {
     pub corner_tolerance: Option<f64>,
     /// Largest speed along the segment, mm/s; may be infinite.
     pub feedrate: f64,
-    /// Into how many intervals of equal duration its time is cut; at least [`Segment::FEWEST_STEPS`].
+    /// Into how many intervals of equal duration its time is cut; at least [`WindowSegment::MIN_STEPS`].
     pub steps: usize,
 }
 
-impl<const N: usize> Segment<N> {
+impl<const N: usize> WindowSegment<N> {
     /// Fewest intervals of a segment: from rest to rest needs four, and with four no interval touches
     /// the durations of more than two segments.
-    pub const FEWEST_STEPS: usize = 4;
+    pub const MIN_STEPS: usize = 4;
 }
 
 /// Position, velocity and acceleration at one instant.
@@ -80,7 +80,7 @@ pub struct Window<'a, const N: usize> {
     /// State at the end of the last segment; fixed.
     pub end: EndState<N>,
     /// The segments, each starting where the one before ends.
-    pub segments: &'a [Segment<N>],
+    pub segments: &'a [WindowSegment<N>],
     /// Limits of each axis.
     pub limits: &'a Limits<N>,
 }
@@ -142,7 +142,7 @@ pub enum WindowDefect {
     /// There is no segment.
     #[error("it has no segment")]
     Empty,
-    /// A segment has fewer intervals than [`Segment::FEWEST_STEPS`].
+    /// A segment has fewer intervals than [`WindowSegment::MIN_STEPS`].
     #[error("segment {segment} has too few intervals")]
     TooFewSteps {
         /// The segment, counted from 0.

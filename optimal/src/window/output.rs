@@ -3,7 +3,7 @@
 //! Source: ours. Not here: who makes it, and who needs it.
 
 use toolglide_kinematics::numeric::{JUMP_SLACK, LENGTH_SLACK, TIME_SLACK};
-use toolglide_kinematics::{Piece, Sample, Serves, Vector};
+use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
 
 /// A piece of motion, or a place between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl<const N: usize> Joint<N> {
         let start = piece.at(0.0);
         let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
         let speed = self.velocity.norm();
-        let alone = Serves::one(self.index);
+        let alone = MoveRange::one(self.index);
         if !steady
             || piece.serves() != alone
             || (start.velocity - self.velocity).norm() > 0.1 * JUMP_SLACK * speed

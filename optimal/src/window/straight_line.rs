@@ -4,8 +4,8 @@
 //! travelled to a stop; and the middle of a long move is travelled in this way. Not here: when that is.
 
 use crate::path::spans::Span;
-use toolglide_kinematics::{Piece, Sample, Serves, Tangential, Vector};
-use toolglide_profiles::{Connection, Feed};
+use toolglide_kinematics::{MoveRange, PathLimits, Piece, Sample, Vector};
+use toolglide_profiles::{SCurve, SCurveBoundary};
 
 /// Spans from the beginning that lie on one line.
 pub(crate) fn on_one_line<'a, const N: usize>(spans: impl Iterator<Item = &'a Span<N>>) -> usize {
@@ -26,8 +26,8 @@ pub(crate) fn stop_to_stop<const N: usize>(span: &Span<N>) -> f64 {
         .unwrap_or(f64::INFINITY)
 }
 
-fn connection(limits: &Tangential, [from, to]: [f64; 2]) -> Connection {
-    Connection {
+fn connection(limits: &PathLimits, [from, to]: [f64; 2]) -> SCurveBoundary {
+    SCurveBoundary {
         from: [from, 0.0],
         to: [to, 0.0],
         limits: *limits,
@@ -40,8 +40,8 @@ pub(crate) struct Line<const N: usize> {
     pub(crate) start: Vector<N>,
     pub(crate) end: Vector<N>,
     pub(crate) direction: Vector<N>,
-    pub(crate) limits: Tangential,
-    pub(crate) serves: Serves,
+    pub(crate) limits: PathLimits,
+    pub(crate) serves: MoveRange,
 }
 
 impl<const N: usize> Line<N> {
@@ -60,7 +60,7 @@ impl<const N: usize> Line<N> {
     /// it is long enough.
     pub(crate) fn travel(&self, speeds: [f64; 2], mut take: impl FnMut(Piece<N>)) -> bool {
         let length = (self.end - self.start).norm();
-        let Ok(feed) = Feed::over(length, &connection(&self.limits, speeds)) else {
+        let Ok(feed) = SCurve::over(length, &connection(&self.limits, speeds)) else {
             return false;
         };
         let at = |position: f64| -> Vector<N> {

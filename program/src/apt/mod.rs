@@ -17,7 +17,7 @@ use crate::error::{Fault, Notice, ProgramError, Warning};
 use crate::interpreter::frame::Frame;
 use crate::interpreter::tools::LARGEST_TOOL;
 use crate::interpreter::units::Units;
-use crate::program::MOST_WARNINGS;
+use crate::program::MAX_WARNINGS;
 use crate::settings::Settings;
 use crate::text::lines::{LONGEST_LINE, Lines};
 use crate::text::place::{Place, Span};
@@ -247,7 +247,7 @@ impl<R: BufRead> CutterLocations<R> {
     }
 
     fn warn(&mut self, span: Span, notice: Notice) {
-        if self.warnings.len() < MOST_WARNINGS {
+        if self.warnings.len() < MAX_WARNINGS {
             let place = self.place(span);
             self.warnings.push(Warning::new(place, notice, &self.text));
         } else {

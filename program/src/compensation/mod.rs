@@ -20,7 +20,7 @@ use toolglide_kinematics::{Move, Path, Vector};
 const SMOOTH: f64 = 1e-3;
 
 /// Moves along the normal of the plane that may wait behind the last one in the plane.
-const MOST_WAITING: usize = 10_000;
+const MAX_WAITING: usize = 10_000;
 
 /// Compensation that is on, or about to end.
 #[derive(Debug)]
@@ -169,8 +169,8 @@ impl Compensation {
         }
         let Some(tangents) = programmed.tangents() else {
             let next = Behind::Height(end[self.normal], step);
-            if self.behind.len() >= MOST_WAITING {
-                let bound = crate::interpreter::MOST_MOVES;
+            if self.behind.len() >= MAX_WAITING {
+                let bound = crate::interpreter::MAX_MOVES;
                 return Err(MachiningError::TooManyMoves { bound }.into());
             }
             self.behind.push_back(next);

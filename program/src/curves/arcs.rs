@@ -7,7 +7,7 @@ use crate::block::word_usage::motion_span;
 use crate::block::{AXES, Block, OFFSETS};
 use crate::error::reason::Reason;
 use crate::error::{Fault, Notice};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::{Modal, whole};
 use crate::interpreter::units::{Units, within_reach};
 use crate::text::place::Span;
@@ -23,10 +23,10 @@ const RADIUS_SHORTFALL: f64 = 0.005;
 const UNSEEN_MISMATCH: f64 = 0.005;
 
 /// How often the rounding of coordinates the radii may differ at most, however large they are.
-const MOST_ROUNDINGS: f64 = 100.0;
+const MAX_ROUNDINGS: f64 = 100.0;
 
 /// Most turns of one arc: more than a day of turns a machine could make.
-const MOST_TURNS: u32 = 1_000_000;
+const MAX_TURNS: u32 = 1_000_000;
 
 impl Plane {
     /// Its axes; a positive turn goes from the first to the second.
@@ -76,7 +76,7 @@ impl Plane {
 /// rounding to three decimals.
 pub(crate) fn arc(
     block: &Block,
-    state: &Lowering,
+    state: &Interpreter,
     motion: Motion,
     start: Vector<3>,
     end: Vector<3>,
@@ -94,7 +94,7 @@ pub(crate) fn arc(
     let frame = state.offsets.frame();
     let counter_clockwise = counter_clockwise != frame.mirrors(axes);
     let (center, blamed) = center(block, state, counter_clockwise, start, end)?;
-    let turns = whole(block, b'P', "number of turns", 1, MOST_TURNS)?.unwrap_or(1);
+    let turns = whole(block, b'P', "number of turns", 1, MAX_TURNS)?.unwrap_or(1);
     let (center, mismatch) = corrected(center, start, end, modal)
         .map_err(|error| Fault::new(blamed, Reason::Path(error)))?;
     Arc::about(start, end, center, axes, counter_clockwise, turns - 1)
@@ -104,7 +104,7 @@ pub(crate) fn arc(
 
 fn center(
     block: &Block,
-    state: &Lowering,
+    state: &Interpreter,
     counter_clockwise: bool,
     start: Vector<3>,
     end: Vector<3>,
@@ -150,7 +150,7 @@ fn center(
 
 fn center_by_offsets(
     block: &Block,
-    state: &Lowering,
+    state: &Interpreter,
     blamed: Span,
     start: Vector<3>,
 ) -> Result<Vector<3>, Fault> {
@@ -188,7 +188,7 @@ fn center_by_offsets(
 pub(crate) fn allowed_mismatch(units: Units, radius: f64) -> f64 {
     let rounding = units.arc_rounding();
     let share = ARC_RADIUS_MISMATCH_SHARE * radius;
-    rounding.max(share).min(MOST_ROUNDINGS * rounding)
+    rounding.max(share).min(MAX_ROUNDINGS * rounding)
 }
 
 /// The centre of an arc whose coordinates were rounded, moved so that both ends are on one circle; where it would
@@ -239,7 +239,7 @@ fn corrected(
     Ok((there, Some(mismatch)))
 }
 
-impl Lowering {
+impl Interpreter {
     /// Tells of the first arc whose coordinates were rounded.
     pub(crate) fn tell_rounding(&mut self, block: &Block, mismatch: Option<f64>) {
         if let Some(mismatch) = mismatch

@@ -4,14 +4,14 @@
 //! its control points, so that chords near all of them are near the curve. Not here: which curves a
 //! program asks for, see `splines`.
 
-use crate::interpreter::MOST_MOVES;
+use crate::interpreter::MAX_MOVES;
 use toolglide_kinematics::Vector;
 
 /// A point times its weight, and the weight.
 pub(crate) type Weighted = [f64; 4];
 
 /// How often one curve is halved at most: beyond a million chords there is no curve left.
-pub(crate) const MOST_HALVINGS: u32 = 20;
+pub(crate) const MAX_HALVINGS: u32 = 20;
 
 /// Appends points to which chords lead from the start of a curve, within `error` of it.
 pub(crate) fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut Vec<[f64; 3]>) {
@@ -22,7 +22,7 @@ pub(crate) fn flatten(curve: &[Weighted], error: f64, halvings: u32, into: &mut 
     let flat = curve
         .iter()
         .all(|point| off_chord(place(point), start, end) <= error);
-    if flat || halvings == 0 || into.len() > MOST_MOVES as usize {
+    if flat || halvings == 0 || into.len() > MAX_MOVES as usize {
         into.push(end.into());
         return;
     }
@@ -145,7 +145,7 @@ mod tests {
             [0.0, 1.0, 2.0, 1.0],
         ];
         let mut chords = Vec::new();
-        flatten(&curve, 1e-4, MOST_HALVINGS, &mut chords);
+        flatten(&curve, 1e-4, MAX_HALVINGS, &mut chords);
         assert!(chords.len() > 8, "{} chords", chords.len());
         for point in &chords {
             assert!((point[0].hypot(point[1]) - 1.0).abs() < 1e-12, "{point:?}");

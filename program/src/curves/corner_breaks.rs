@@ -8,7 +8,7 @@ use crate::compensation::offset_curve::{Curve, Flat, cross, dot, minus, norm, pl
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::text::place::Span;
 use std::collections::VecDeque;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
@@ -41,7 +41,7 @@ struct Break {
     center: Option<(Flat, bool)>,
 }
 
-impl Lowering {
+impl Interpreter {
     /// Keeps a move back whose end is a corner to be broken.
     pub(crate) fn hold_corner(
         &mut self,

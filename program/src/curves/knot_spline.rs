@@ -8,12 +8,12 @@
 use crate::block::codes::{FeedMode, Motion};
 use crate::block::word_usage::motion_span;
 use crate::block::{AXES, Block};
-use crate::curves::bezier::{MOST_HALVINGS, Weighted, beziers, flatten};
-use crate::curves::splines::{LARGEST_ORDER, MOST_POINTS, weighted};
+use crate::curves::bezier::{MAX_HALVINGS, Weighted, beziers, flatten};
+use crate::curves::splines::{LARGEST_ORDER, MAX_POINTS, weighted};
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::whole;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Move, Vector};
@@ -88,7 +88,7 @@ impl KnotSpline {
     }
 }
 
-impl Lowering {
+impl Interpreter {
     /// A block of a spline with knots: its first one, one with a point, or one with a knot alone.
     pub(crate) fn knot_block(
         &mut self,
@@ -151,8 +151,8 @@ impl Lowering {
             if spline.has_all_points() {
                 return Err(here(MachiningError::LatePoint));
             }
-            if spline.points.len() >= MOST_POINTS {
-                let bound = MOST_POINTS;
+            if spline.points.len() >= MAX_POINTS {
+                let bound = MAX_POINTS;
                 return Err(here(MachiningError::TooManyPoints { bound }));
             }
             spline.points.push(weighted(end, weight));
@@ -204,7 +204,7 @@ impl Lowering {
         spline.check().map_err(refused)?;
         let mut chords = Vec::new();
         for curve in beziers(&spline.points, spline.order, &spline.knots) {
-            flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
+            flatten(&curve, self.chord_error(), MAX_HALVINGS, &mut chords);
         }
         self.program = self.offsets.in_program(self.position);
         self.follow(&chords, block, moves)

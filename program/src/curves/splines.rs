@@ -8,12 +8,12 @@
 use crate::block::codes::{Distance, Group, Motion, PathControl, Plane};
 use crate::block::word_usage::motion_span;
 use crate::block::{AXES, Block};
-use crate::curves::bezier::{MOST_HALVINGS, Weighted, beziers, even_knots, flatten};
+use crate::curves::bezier::{MAX_HALVINGS, Weighted, beziers, even_knots, flatten};
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
 use crate::interpreter::modal::whole;
-use crate::interpreter::{Lowering, MOST_MOVES};
+use crate::interpreter::{Interpreter, MAX_MOVES};
 use crate::text::place::Span;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Feedrate, Move, Tolerance, Vector};
@@ -22,7 +22,7 @@ use toolglide_kinematics::{Feedrate, Move, Tolerance, Vector};
 pub(crate) const CHORD_SHARE: f64 = 0.1;
 
 /// Control points of one spline.
-pub(crate) const MOST_POINTS: usize = 10_000;
+pub(crate) const MAX_POINTS: usize = 10_000;
 
 /// Order of a rational spline where none is written, and the largest.
 const USUAL_ORDER: u32 = 3;
@@ -45,7 +45,7 @@ pub(crate) fn weighted(point: Vector<3>, weight: f64) -> Weighted {
     ]
 }
 
-impl Lowering {
+impl Interpreter {
     /// `G5` and `G5.1`.
     pub(crate) fn spline(
         &mut self,
@@ -96,7 +96,7 @@ impl Lowering {
             .map(|point| [point[0], point[1], height, 1.0])
             .collect();
         let mut chords = Vec::new();
-        flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
+        flatten(&curve, self.chord_error(), MAX_HALVINGS, &mut chords);
         self.follow(&chords, block, moves)
     }
 
@@ -125,8 +125,8 @@ impl Lowering {
         let end = self.end(block)?;
         self.program = end;
         if let Some(nurbs) = &mut self.nurbs {
-            if nurbs.points.len() >= MOST_POINTS {
-                let bound = MOST_POINTS;
+            if nurbs.points.len() >= MAX_POINTS {
+                let bound = MAX_POINTS;
                 return Err(Fault::new(
                     span,
                     MachiningError::TooManyPoints { bound }.into(),
@@ -157,7 +157,7 @@ impl Lowering {
         let mut chords = Vec::new();
         let knots = even_knots(given, order);
         for curve in beziers(&nurbs.points, order, &knots) {
-            flatten(&curve, self.chord_error(), MOST_HALVINGS, &mut chords);
+            flatten(&curve, self.chord_error(), MAX_HALVINGS, &mut chords);
         }
         self.program = self.offsets.in_program(self.position);
         self.follow(&chords, block, moves)
@@ -234,8 +234,8 @@ impl Lowering {
             at = Vector::from(*point);
         }
         let feedrate = self.feedrate(block, length)?;
-        if chords.len() > MOST_MOVES as usize {
-            let bound = MOST_MOVES;
+        if chords.len() > MAX_MOVES as usize {
+            let bound = MAX_MOVES;
             let reason = MachiningError::TooManyMoves { bound };
             return Err(Fault::new(span, reason.into()));
         }

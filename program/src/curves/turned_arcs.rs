@@ -10,12 +10,12 @@ use crate::curves::chords::count;
 use crate::curves::splines::CHORD_SHARE;
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::offsets::Offsets;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Move, Tolerance, Vector};
 
-impl Lowering {
+impl Interpreter {
     /// Whether the plane of arcs is none of the machine.
     pub(crate) fn turns_arcs(&self) -> bool {
         let upright = self.modal.plane != Plane::Xy && self.offsets.rotation() != 0.0;

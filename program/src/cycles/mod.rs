@@ -14,7 +14,7 @@ use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
 use crate::interpreter::modal::whole;
 use crate::interpreter::units::within_reach;
-use crate::interpreter::{Lowering, MOST_MOVES};
+use crate::interpreter::{Interpreter, MAX_MOVES};
 use crate::text::place::Span;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Feedrate, Move, Vector};
@@ -38,7 +38,7 @@ struct Hole {
     feedrate: Feedrate,
 }
 
-impl Lowering {
+impl Interpreter {
     /// Drills the holes of a block.
     pub(crate) fn cycle(
         &mut self,
@@ -87,7 +87,7 @@ impl Lowering {
             clear,
             feedrate,
         };
-        let repetitions = whole(block, b'L', "number of repetitions", 0, MOST_MOVES)?.unwrap_or(1);
+        let repetitions = whole(block, b'L', "number of repetitions", 0, MAX_MOVES)?.unwrap_or(1);
         let first = moves.len();
         let mut outcome = match motion {
             // Of this one the plane of R lies below.

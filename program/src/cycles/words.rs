@@ -8,7 +8,7 @@ use crate::block::{AXES, Block};
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::not_negative;
 use crate::interpreter::units::within_reach;
 
@@ -25,7 +25,7 @@ pub(crate) struct CycleState {
     pub(crate) offsets: [f64; 3],
 }
 
-impl Lowering {
+impl Interpreter {
     /// The words of a cycle, those of its former blocks included.
     pub(crate) fn cycle_words(
         &self,

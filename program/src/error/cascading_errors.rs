@@ -9,11 +9,11 @@ use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
 
 /// Bytes of refused lines that are remembered, in all: enough for every name they may have set.
-const MOST_TEXT: usize = 16 * 1024;
+const MAX_TEXT: usize = 16 * 1024;
 
 /// What refused lines may have left undone.
 #[derive(Debug, Default)]
-pub(crate) struct Aftermath {
+pub(crate) struct CascadingErrors {
     any: bool,
     feedrate: bool,
     code: bool,
@@ -23,7 +23,7 @@ pub(crate) struct Aftermath {
     text: Vec<u8>,
 }
 
-impl Aftermath {
+impl CascadingErrors {
     /// Remembers a refused line; `arrived` says that its end was taken all the same.
     pub(crate) fn take(&mut self, line: &[u8], arrived: bool) {
         self.any = true;
@@ -32,7 +32,7 @@ impl Aftermath {
         self.code |= has(b"Gg");
         // Of O words nobody knows what they would have run.
         self.place |= !arrived && has(b"XYZxyz@^Oo");
-        if has(b"#Oo=") && self.text.len() + line.len() < MOST_TEXT {
+        if has(b"#Oo=") && self.text.len() + line.len() < MAX_TEXT {
             let kept = line.iter().filter(|byte| !byte.is_ascii_whitespace());
             self.text.extend(kept.map(u8::to_ascii_lowercase));
             self.text.push(b'\n');
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn only_what_a_refused_line_may_have_done_is_its_consequence() {
-        let mut aftermath = Aftermath::default();
+        let mut aftermath = CascadingErrors::default();
         assert!(
             !aftermath.explains(&Reason::NoFeedrate, false),
             "nothing yet"

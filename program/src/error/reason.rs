@@ -11,7 +11,7 @@ use crate::error::statement::StatementError;
 use std::sync::Arc;
 use thiserror::Error;
 use toolglide_kinematics::ToolpathError;
-use toolglide_kinematics::numeric::{LARGEST_QUANTITY, LEAST_QUANTITY};
+use toolglide_kinematics::numeric::{LARGEST_QUANTITY, MIN_QUANTITY};
 
 /// Why a word, a line or a file is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -250,7 +250,7 @@ pub enum Reason {
     NoInverseTime,
     /// A feedrate that cannot be followed.
     #[error(
-        "feedrate comes to {speed} mm/s, but must be finite, at least {LEAST_QUANTITY} and at most {LARGEST_QUANTITY:e} mm/s"
+        "feedrate comes to {speed} mm/s, but must be finite, at least {MIN_QUANTITY} and at most {LARGEST_QUANTITY:e} mm/s"
     )]
     Feedrate {
         /// The feedrate, mm/s.

@@ -21,7 +21,7 @@ const FIRST_READ_ONLY: u32 = 5400;
 const LAST_READ_ONLY: u32 = 5428;
 
 /// Named parameters that are held at once: memory must not grow with a loop that makes names.
-const MOST_NAMES: usize = 10_000;
+const MAX_NAMES: usize = 10_000;
 
 /// Subroutines within subroutines.
 pub(crate) const DEEPEST_CALL: usize = 100;
@@ -110,8 +110,8 @@ impl Parameters {
             *place = value;
             return Ok(());
         }
-        if self.names >= MOST_NAMES {
-            return Err(ArithmeticError::TooMany { bound: MOST_NAMES });
+        if self.names >= MAX_NAMES {
+            return Err(ArithmeticError::TooMany { bound: MAX_NAMES });
         }
         self.names += 1;
         scope.insert(name.into(), value);
@@ -187,10 +187,10 @@ mod tests {
     #[test]
     fn the_number_of_names_is_bounded() {
         let mut parameters = Parameters::new();
-        for name in 0..MOST_NAMES {
+        for name in 0..MAX_NAMES {
             assert!(parameters.set_named(&name.to_string(), 0.0).is_ok(), "room");
         }
-        let bound = MOST_NAMES;
+        let bound = MAX_NAMES;
         let refused = parameters.set_named("one more", 0.0);
         assert_eq!(refused, Err(ArithmeticError::TooMany { bound }), "full");
     }

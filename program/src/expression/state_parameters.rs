@@ -8,7 +8,7 @@ use crate::error::Fault;
 use crate::error::arithmetic::ArithmeticError;
 use crate::expression::parameters::{LARGEST_PARAMETER, Values};
 use crate::expression::{Evaluator, LONGEST_NAME, Parameter};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::secondary_axes::ROTARY;
 use crate::interpreter::units::Units;
 use crate::text::lexer::Assignment;
@@ -23,7 +23,7 @@ const DIAMETER: u32 = 5410;
 const POSITION: u32 = 5420;
 const POSITION_OF_OTHERS: u32 = 5423;
 
-impl Values for Lowering {
+impl Values for Interpreter {
     fn numbered(&self, number: u32) -> f64 {
         let units = self.modal.units;
         match number {
@@ -56,7 +56,7 @@ impl Values for Lowering {
     }
 }
 
-impl Lowering {
+impl Interpreter {
     /// A predefined parameter.
     fn predefined(&self, name: &str) -> Option<f64> {
         let modal = &self.modal;

@@ -34,7 +34,7 @@ const LETTERS: [(u8, usize); 21] = [
 ];
 
 /// Triples of list II.
-const MOST_TRIPLES: usize = 10;
+const MAX_TRIPLES: usize = 10;
 
 /// The macro that is called after each motion.
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ pub(crate) fn locals(arguments: &[Word]) -> Result<Locals, Fault> {
                 triple += 1;
             }
             last = variable;
-            if triple >= MOST_TRIPLES {
+            if triple >= MAX_TRIPLES {
                 return Err(Fault::new(word.span, Reason::Repeated { letter }));
             }
             variable + 3 * triple

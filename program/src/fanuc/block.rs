@@ -11,7 +11,7 @@ use crate::error::machining::MachiningError;
 use crate::fanuc::Fanuc;
 use crate::fanuc::codes::{Machine, Special};
 use crate::fanuc::words::{Word, words};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::program::Program;
 use crate::text::lexer::Word as Plain;
 use crate::text::place::Span;
@@ -191,7 +191,7 @@ impl Fanuc {
     }
 
     /// Refuses an action while cutter compensation is on.
-    pub(crate) fn refuse_compensated(taken: &Taken, state: &Lowering) -> Result<(), Fault> {
+    pub(crate) fn refuse_compensated(taken: &Taken, state: &Interpreter) -> Result<(), Fault> {
         if state
             .compensation
             .as_ref()

@@ -13,7 +13,7 @@ use crate::fanuc::codes::Machine;
 use crate::fanuc::course::{Found, Kind};
 use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
-use crate::flow::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
+use crate::flow::subprograms::{LARGEST_NUMBER, MAX_REPETITIONS};
 use crate::program::Program;
 use crate::text::place::Span;
 use std::io::BufRead;
@@ -44,7 +44,7 @@ impl Fanuc {
         let number = whole(&called, "number of a subprogram", 0, LARGEST_NUMBER)?;
         let repetitions = word(words, b'L');
         let times = match &repetitions {
-            Some(times) => whole(times, "repetitions", 0, MOST_REPETITIONS)?,
+            Some(times) => whole(times, "repetitions", 0, MAX_REPETITIONS)?,
             None => 1,
         };
         let block = match word(words, b'Q') {
@@ -182,7 +182,7 @@ impl Fanuc {
         }
         let number = whole(&called, "number of a macro", 0, LARGEST_NUMBER)?;
         let times = match word(words, b'L') {
-            Some(times) => whole(&times, "repetitions", 0, MOST_REPETITIONS)?,
+            Some(times) => whole(&times, "repetitions", 0, MAX_REPETITIONS)?,
             None => 1,
         };
         let locals = locals(words)?;

@@ -7,7 +7,7 @@
 use crate::error::arithmetic::ArithmeticError;
 use crate::fanuc::functions::number;
 use crate::fanuc::value::{NULL, Variables};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::offsets::{SYSTEMS, origin};
 use std::collections::BTreeMap;
 use toolglide_kinematics::Vector;
@@ -78,7 +78,7 @@ pub(crate) struct Memory {
 /// Variables as an expression sees them.
 pub(crate) struct Scope<'a> {
     pub(crate) memory: &'a Memory,
-    pub(crate) state: &'a Lowering,
+    pub(crate) state: &'a Interpreter,
 }
 
 /// A system of coordinates with an axis, as a variable names it.
@@ -138,7 +138,7 @@ impl Memory {
         &mut self,
         variable: u32,
         value: f64,
-        state: &mut Lowering,
+        state: &mut Interpreter,
     ) -> Result<Written, ArithmeticError> {
         let kept = own(variable);
         match variable {
@@ -197,7 +197,7 @@ impl Memory {
     }
 
     /// Selects an additional work offset.
-    pub(crate) fn select_extended(&mut self, index: u32, state: &mut Lowering) {
+    pub(crate) fn select_extended(&mut self, index: u32, state: &mut Interpreter) {
         self.in_force = index;
         let origin = self.extended.get(&index).copied().unwrap_or_default();
         state.offsets.take_origin(Vector::from(origin));

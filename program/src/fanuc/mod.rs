@@ -1,7 +1,7 @@
 //! Reads programs of FANUC and Haas mills into the blocks and moves of RS274/NGC.
 //!
 //! Source: the operator's manuals of FANUC 0i and 30i and of Haas mills; `docs/programs.md` of the project lists
-//! every word. The modal state and the moves are those of [`Lowering`](crate::interpreter::Lowering). Not here:
+//! every word. The modal state and the moves are those of [`Interpreter`](crate::interpreter::Lowering). Not here:
 //! lathes.
 
 mod actions;

@@ -13,14 +13,14 @@ use crate::fanuc::actions::length;
 use crate::fanuc::block::{Taken, axes, word};
 use crate::fanuc::modes::whole;
 use crate::fanuc::words::Word;
-use crate::interpreter::MOST_MOVES;
+use crate::interpreter::MAX_MOVES;
 use crate::interpreter::tools::LARGEST_TOOL;
 use crate::program::Program;
 use std::io::BufRead;
 use toolglide_kinematics::{Feedrate, Vector};
 
 /// Steps between the circles of one pocket, and its levels.
-const MOST_STEPS: f64 = 10_000.0;
+const MAX_STEPS: f64 = 10_000.0;
 
 /// The circles of a pocket, mm.
 struct Circles {
@@ -57,7 +57,7 @@ impl Fanuc {
         let feedrate = program.lowering.feedrate(&program.block, 1.0)?;
         let circles = self.circles(taken, counter_clockwise, feedrate, words, program)?;
         let levels = match word(words, b'L') {
-            Some(levels) => whole(&levels, "levels of a pocket", 1, MOST_MOVES)?,
+            Some(levels) => whole(&levels, "levels of a pocket", 1, MAX_MOVES)?,
             None => 1,
         };
         let incremental = program.lowering.modal.distance == Distance::Incremental;
@@ -128,8 +128,8 @@ impl Fanuc {
             let reason = MachiningError::ToolTooLarge { radius, arc: first };
             return Err(Fault::new(taken.span, reason.into()));
         }
-        if (last - first) / step > MOST_STEPS {
-            let bound = MOST_MOVES;
+        if (last - first) / step > MAX_STEPS {
+            let bound = MAX_MOVES;
             let reason = MachiningError::TooManyMoves { bound };
             return Err(Fault::new(taken.span, reason.into()));
         }

@@ -16,7 +16,7 @@ use crate::text::place::Span;
 use std::io::BufRead;
 
 /// Loops have numbers from 1 to this.
-const MOST_LOOPS: u32 = 3;
+const MAX_LOOPS: u32 = 3;
 
 /// Largest number of a block.
 const LARGEST_BLOCK: u32 = 99_999_999;
@@ -81,7 +81,7 @@ impl Fanuc {
             }
             b"DO" => self.begin_loop(text, end, span, true, program),
             b"END" => {
-                let (number, behind) = self.number(text, end, span, program, MOST_LOOPS)?;
+                let (number, behind) = self.number(text, end, span, program, MAX_LOOPS)?;
                 nothing_follows(text, behind)?;
                 let outcome = self.course.end_loop(number);
                 outcome.map_err(|reason| Fault::new(Span::new(at, behind), reason))
@@ -149,7 +149,7 @@ impl Fanuc {
         let nearest = value.round();
         if !(1.0..=f64::from(most)).contains(&nearest) || (value - nearest).abs() > 1e-4 {
             let reason = Reason::NotWhole {
-                quantity: if most == MOST_LOOPS {
+                quantity: if most == MAX_LOOPS {
                     "number of a loop"
                 } else {
                     "number of a block"
@@ -176,7 +176,7 @@ impl Fanuc {
         runs: bool,
         program: &mut Program<R>,
     ) -> Result<(), Fault> {
-        let (number, behind) = self.number(text, at, keyword, program, MOST_LOOPS)?;
+        let (number, behind) = self.number(text, at, keyword, program, MAX_LOOPS)?;
         nothing_follows(text, behind)?;
         let outcome = self.course.enter_loop(&mut program.flow, number, runs);
         outcome.map_err(|reason| Fault::new(keyword, reason))
@@ -230,7 +230,7 @@ impl Fanuc {
         &mut self,
         variable: u32,
         value: f64,
-        state: &mut crate::interpreter::Lowering,
+        state: &mut crate::interpreter::Interpreter,
     ) -> Result<(), ArithmeticError> {
         match self.memory.set(variable, value, state)? {
             Written::Alarm | Written::Stop => {

@@ -10,16 +10,16 @@ use crate::flow::control::{Control, Keyword, Label, control, o_word};
 use crate::flow::definitions::Definitions;
 use crate::flow::recording::{LONGEST_RECORDING, Recording};
 use crate::flow::{Call, Flow, Open};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use std::io::BufRead;
 use std::sync::Arc;
 
 /// Most repetitions of a loop: beyond this a float no longer counts.
-const MOST_REPETITIONS: f64 = 1e15;
+const MAX_REPETITIONS: f64 = 1e15;
 
 impl<R: BufRead> Flow<R> {
     /// Obeys the O word at `at` of the line being run; false for the mere number of a program.
-    pub(crate) fn obey(&mut self, at: usize, state: &mut Lowering) -> Result<bool, Fault> {
+    pub(crate) fn obey(&mut self, at: usize, state: &mut Interpreter) -> Result<bool, Fault> {
         let Some(control) = control(self.text(), at, state)? else {
             return Ok(false);
         };
@@ -85,7 +85,7 @@ impl<R: BufRead> Flow<R> {
         Ok(())
     }
 
-    fn call(&mut self, control: &Control, state: &mut Lowering) -> Result<(), Fault> {
+    fn call(&mut self, control: &Control, state: &mut Interpreter) -> Result<(), Fault> {
         let mut arguments = Vec::new();
         control.arguments(self.text(), state, &mut arguments)?;
         let (given, bound) = (arguments.len(), LOCAL_PARAMETERS);
@@ -166,7 +166,11 @@ impl<R: BufRead> Flow<R> {
         Ok(())
     }
 
-    fn leave_subroutine(&mut self, control: &Control, state: &mut Lowering) -> Result<(), Fault> {
+    fn leave_subroutine(
+        &mut self,
+        control: &Control,
+        state: &mut Interpreter,
+    ) -> Result<(), Fault> {
         let mut values = Vec::new();
         control.arguments(self.text(), state, &mut values)?;
         if !self.leave() {
@@ -177,7 +181,7 @@ impl<R: BufRead> Flow<R> {
     }
 
     /// Takes the first branch whose condition holds.
-    fn condition(&mut self, mut control: Control, state: &Lowering) -> Result<(), Fault> {
+    fn condition(&mut self, mut control: Control, state: &Interpreter) -> Result<(), Fault> {
         let first = control.clone();
         loop {
             let holds = control.argument(self.text(), state)? != 0.0;
@@ -205,7 +209,7 @@ impl<R: BufRead> Flow<R> {
     }
 
     /// A `while` is the head of a loop, or the foot of a `do`.
-    fn while_loop(&mut self, control: &Control, state: &Lowering) -> Result<(), Fault> {
+    fn while_loop(&mut self, control: &Control, state: &Interpreter) -> Result<(), Fault> {
         let foot = self
             .open()
             .last()
@@ -230,12 +234,12 @@ impl<R: BufRead> Flow<R> {
         Ok(())
     }
 
-    fn repeat(&mut self, control: &Control, state: &Lowering) -> Result<(), Fault> {
+    fn repeat(&mut self, control: &Control, state: &Interpreter) -> Result<(), Fault> {
         if self.frames.is_empty() {
             return self.remember(control, Keyword::EndRepeat).map(|_| ());
         }
         let value = control.argument(self.text(), state)?.round();
-        let most = MOST_REPETITIONS;
+        let most = MAX_REPETITIONS;
         if value > most {
             return Err(control.fault(FlowError::BadRepetitions { value, most }));
         }

@@ -8,7 +8,7 @@
 use crate::error::flow::FlowError;
 use crate::expression::parameters::Parameters;
 use crate::flow::{Flow, Frame, Open};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::Modal;
 use crate::interpreter::offsets::Offsets;
 use crate::interpreter::secondary_axes::Others;
@@ -92,7 +92,7 @@ impl Watch {
     pub(crate) fn note(
         &mut self,
         (start, others): (Vector<3>, Others),
-        state: &Lowering,
+        state: &Interpreter,
         moves: &VecDeque<Move<3>>,
     ) {
         let moves_on = |next: &Move<3>| match next.path() {
@@ -109,7 +109,7 @@ impl Watch {
 impl<R: BufRead> Flow<R> {
     /// Refuses a line that is run again with nothing changed since it was run before: from there on all
     /// happens again, without end.
-    pub(crate) fn check_progress(&mut self, state: &Lowering) -> Result<(), FlowError> {
+    pub(crate) fn check_progress(&mut self, state: &Interpreter) -> Result<(), FlowError> {
         if self.current.is_none() && self.tape.is_none() {
             return Ok(());
         }
@@ -135,7 +135,7 @@ impl<R: BufRead> Flow<R> {
 }
 
 impl Seen {
-    fn of<R: BufRead>(flow: &Flow<R>, state: &Lowering) -> Self {
+    fn of<R: BufRead>(flow: &Flow<R>, state: &Interpreter) -> Self {
         Self {
             lines_read: flow.lines.count(),
             line: flow.here_index(),
@@ -145,7 +145,7 @@ impl Seen {
         }
     }
 
-    fn is<R: BufRead>(&self, flow: &Flow<R>, state: &Lowering) -> bool {
+    fn is<R: BufRead>(&self, flow: &Flow<R>, state: &Interpreter) -> bool {
         self.line == flow.here_index()
             && self.lines_read == flow.lines.count()
             && self.open == flow.open
@@ -162,7 +162,7 @@ fn same((one, other): (&Frame, &Frame)) -> bool {
 }
 
 impl State {
-    fn of(state: &Lowering) -> Self {
+    fn of(state: &Interpreter) -> Self {
         Self {
             parameters: state.parameters.clone(),
             program: state.program,
@@ -177,7 +177,7 @@ impl State {
     }
 
     #[allow(clippy::float_cmp, reason = "the very same state, not one nearby")]
-    fn is(&self, state: &Lowering) -> bool {
+    fn is(&self, state: &Interpreter) -> bool {
         self.program == state.program
             && self.position == state.position
             && self.others == state.others

@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub(crate) const LARGEST_NUMBER: u32 = 99_999_999;
 
 /// Most repetitions of one call: four digits, as controls of FANUC count them.
-pub(crate) const MOST_REPETITIONS: u32 = 9999;
+pub(crate) const MAX_REPETITIONS: u32 = 9999;
 
 /// The rest of a file, with the lines of each subprogram in it.
 #[derive(Debug)]

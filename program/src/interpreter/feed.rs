@@ -7,7 +7,7 @@ use crate::block::codes::{FeedMode, Group, Motion};
 use crate::block::word_usage::motion_span;
 use crate::error::Fault;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::not_negative;
 use crate::interpreter::units::inverse_time;
 use crate::text::place::Span;
@@ -16,7 +16,7 @@ use toolglide_kinematics::{Feedrate, Move};
 /// Longest dwell, s: about eleven days, more than any process waits.
 const LONGEST_DWELL: f64 = 1e6;
 
-impl Lowering {
+impl Interpreter {
     pub(crate) fn dwell(&self, block: &Block) -> Result<Move<3>, Fault> {
         let Some(duration) = not_negative(block, b'P', "dwell")? else {
             let (code, span) = block

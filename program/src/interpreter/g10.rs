@@ -6,14 +6,14 @@ use crate::block::code::Code;
 use crate::block::{AXES, Block};
 use crate::error::Fault;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::whole;
 use crate::interpreter::non_modal::missing;
 use crate::interpreter::offsets::{SYSTEMS, axis_number, origin, rotation};
 use crate::interpreter::tool_codes::Measured;
 use toolglide_kinematics::Vector;
 
-impl Lowering {
+impl Interpreter {
     /// `G10`.
     pub(crate) fn set_data(&mut self, block: &Block) -> Result<(), Fault> {
         let Some(kind) = whole(block, b'L', "kind of data", 0, 20)? else {

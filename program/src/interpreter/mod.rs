@@ -42,14 +42,14 @@ use units::per_minute;
 
 /// Moves that one block may make: more than any spline or cycle of a real program, and a bound on
 /// what waits for the planner.
-pub(crate) const MOST_MOVES: u32 = 100_000;
+pub(crate) const MAX_MOVES: u32 = 100_000;
 
 /// Tools that are remembered as used.
-const MOST_TOOLS: usize = 10_000;
+const MAX_TOOLS: usize = 10_000;
 
 /// Turns blocks into moves, one after the other.
 #[derive(Debug)]
-pub(crate) struct Lowering {
+pub(crate) struct Interpreter {
     pub(crate) settings: Settings,
     pub(crate) modal: Modal,
     pub(crate) parameters: Parameters,
@@ -95,7 +95,7 @@ pub(crate) struct Lowering {
     pub(crate) printer: Option<Printer>,
 }
 
-impl Lowering {
+impl Interpreter {
     pub(crate) fn new(settings: Settings) -> Self {
         Self {
             settings,
@@ -180,7 +180,7 @@ impl Lowering {
             self.tell_old_feedrate(block, motion, remarks);
         }
         let before = self.position;
-        if block.has(b'T') && self.tools_used.len() < MOST_TOOLS {
+        if block.has(b'T') && self.tools_used.len() < MAX_TOOLS {
             self.tools_used.insert(self.modal.tool);
         }
         if motion.is_some_and(Motion::is_cycle) {
@@ -374,8 +374,8 @@ impl Lowering {
         span: Span,
         moves: &mut VecDeque<Move<3>>,
     ) -> Result<(), Fault> {
-        if moves.len() >= MOST_MOVES as usize {
-            let bound = MOST_MOVES;
+        if moves.len() >= MAX_MOVES as usize {
+            let bound = MAX_MOVES;
             return Err(Fault::new(
                 span,
                 MachiningError::TooManyMoves { bound }.into(),

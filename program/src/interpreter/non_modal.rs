@@ -10,7 +10,7 @@ use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
 use crate::error::{Fault, Remark};
 use crate::expression::parameters::SYSTEM;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::offsets::axis_number;
 use crate::interpreter::secondary_axes::OTHERS;
 use crate::text::place::Span;
@@ -20,7 +20,7 @@ use toolglide_kinematics::{Feedrate, Move, Vector};
 /// Why most set-up has to wait.
 pub(crate) const COMPENSATED: &str = "while cutter compensation is on (G40 ends it)";
 
-impl Lowering {
+impl Interpreter {
     /// Refuses what cutter compensation cannot go through.
     pub(crate) fn check_compensated(&self, block: &Block) -> Result<(), Fault> {
         if self.compensation.as_ref().is_some_and(|on| !on.is_ending()) {

@@ -7,12 +7,12 @@ use crate::block::codes::{Distance, Group, Once, Plane};
 use crate::block::{AXES, Block};
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::secondary_axes::LARGEST_ANGLE;
 use crate::interpreter::units::within_reach;
 use toolglide_kinematics::Vector;
 
-impl Lowering {
+impl Interpreter {
     /// Where the axis words of a block lead.
     pub(crate) fn end(&mut self, block: &Block) -> Result<Vector<3>, Fault> {
         if block.once == Some(Once::MachineCoordinates) {

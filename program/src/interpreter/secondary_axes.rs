@@ -10,7 +10,7 @@ use crate::block::{AXES, Block};
 use crate::error::Fault;
 use crate::error::machining::MachiningError;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::offsets::{SHIFT, SHIFTED, origin};
 use crate::interpreter::units::within_reach;
 
@@ -61,7 +61,7 @@ fn parameters(first: u32) -> impl Iterator<Item = u32> {
     (first + FIRST..).take(OTHERS.len())
 }
 
-impl Lowering {
+impl Interpreter {
     /// The number of a word in degrees or mm.
     fn other(&self, block: &Block, axis: usize) -> Result<Option<f64>, Fault> {
         if axis >= ROTARY {

@@ -7,7 +7,7 @@ use crate::block::{AXES, Block};
 use crate::compensation::Compensation;
 use crate::error::machining::MachiningError;
 use crate::error::{Fault, Notice, Remark};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::{not_negative, whole};
 use crate::interpreter::non_modal::{COMPENSATED, companion, missing, missing_of};
 use crate::interpreter::offsets::SYSTEMS;
@@ -26,7 +26,7 @@ pub(crate) enum Measured {
     OnFixture,
 }
 
-impl Lowering {
+impl Interpreter {
     /// `G10 L1`, `L10` and `L11`.
     pub(crate) fn set_tool(&mut self, block: &Block, how: Measured) -> Result<(), Fault> {
         let Some(number) = whole(block, b'P', "tool number", 0, LARGEST_TOOL)? else {

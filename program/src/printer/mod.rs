@@ -10,7 +10,7 @@ use crate::block::Block;
 use crate::block::codes::{Distance, Motion, Once};
 use crate::error::reason::Reason;
 use crate::error::{Fault, Notice};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::units::within_reach;
 use crate::program::Program;
 use crate::text::number::number;
@@ -21,7 +21,7 @@ use std::io::BufRead;
 use toolglide_kinematics::{Feedrate, Move, Vector};
 
 /// Orders that are remembered as told.
-const MOST_NOTED: usize = 200;
+const MAX_NOTED: usize = 200;
 
 /// Filament, and what was said of orders.
 #[derive(Clone, Debug, Default)]
@@ -94,11 +94,11 @@ fn word_at(text: &[u8], span: Span) -> String {
 impl Printer {
     /// Whether an order is met for the first time.
     fn tells(&mut self, word: &str) -> bool {
-        self.noted.len() < MOST_NOTED && self.noted.insert(word.to_owned())
+        self.noted.len() < MAX_NOTED && self.noted.insert(word.to_owned())
     }
 }
 
-impl Lowering {
+impl Interpreter {
     /// Whether the moves of `G0` keep a feedrate, as printers have it.
     pub(crate) fn paces_rapids(&self) -> bool {
         self.printer.is_some() && self.modal.feedrate.is_some()

@@ -8,14 +8,14 @@ pub(crate) mod statistics;
 
 use crate::block::codes::{Group, Subprogram};
 use crate::block::{Block, O_WORDS};
-use crate::error::cascading_errors::Aftermath;
+use crate::error::cascading_errors::CascadingErrors;
 use crate::error::reason::Reason;
 use crate::error::{Fault, ProgramError, Remark, Warning};
 use crate::fanuc::{Fanuc, explained};
 use crate::flow::Flow;
 use crate::flow::control::o_word;
-use crate::flow::subprograms::{LARGEST_NUMBER, MOST_REPETITIONS};
-use crate::interpreter::Lowering;
+use crate::flow::subprograms::{LARGEST_NUMBER, MAX_REPETITIONS};
+use crate::interpreter::Interpreter;
 use crate::interpreter::modal::whole;
 use crate::interpreter::non_modal::missing_of;
 use crate::settings::Settings;
@@ -31,11 +31,11 @@ use toolglide_kinematics::Move;
 
 /// Warnings that are kept; of more, only the number is known, because a program may deserve one
 /// for each of its lines.
-pub const MOST_WARNINGS: usize = 100;
+pub const MAX_WARNINGS: usize = 100;
 
 /// Refusals within loops and subroutines, after which it makes no sense to go on: a loop that does not
 /// count because its lines are refused has no end.
-const MOST_REPEATED_REFUSALS: u32 = 1000;
+const MAX_REPEATED_REFUSALS: u32 = 1000;
 
 /// Reads a part program and yields its moves, in order.
 ///
@@ -45,7 +45,7 @@ const MOST_REPEATED_REFUSALS: u32 = 1000;
 pub struct Program<R> {
     pub(crate) flow: Flow<R>,
     pub(crate) block: Block,
-    pub(crate) lowering: Lowering,
+    pub(crate) lowering: Interpreter,
     pub(crate) waiting: VecDeque<Move<3>>,
     pub(crate) remarks: Vec<Remark>,
     pub(crate) warnings: Vec<Warning>,
@@ -54,7 +54,7 @@ pub struct Program<R> {
     opened: bool,
     ended: bool,
     pub(crate) past_refusals: bool,
-    aftermath: Aftermath,
+    aftermath: CascadingErrors,
     repeated_refusals: u32,
     pub(crate) sinumerik: Option<Sinumerik>,
     pub(crate) fanuc: Option<Box<Fanuc>>,
@@ -68,7 +68,7 @@ impl<R: BufRead> Program<R> {
         Self {
             flow: Flow::new(reader, file, &settings),
             block: Block::new(),
-            lowering: Lowering::new(settings),
+            lowering: Interpreter::new(settings),
             waiting: VecDeque::new(),
             remarks: Vec::new(),
             warnings: Vec::new(),
@@ -77,7 +77,7 @@ impl<R: BufRead> Program<R> {
             opened: false,
             ended: false,
             past_refusals: false,
-            aftermath: Aftermath::default(),
+            aftermath: CascadingErrors::default(),
             repeated_refusals: 0,
             sinumerik: None,
             fanuc: None,
@@ -212,7 +212,7 @@ impl<R: BufRead> Program<R> {
         }
         let number = whole(block, b'P', "number of a subprogram", 0, LARGEST_NUMBER)?
             .ok_or_else(|| missing_of(block, Group::Stop, 'P'))?;
-        let times = whole(block, b'L', "number of repetitions", 0, MOST_REPETITIONS)?.unwrap_or(1);
+        let times = whole(block, b'L', "number of repetitions", 0, MAX_REPETITIONS)?.unwrap_or(1);
         if self.flow.call_program(number, times).map_err(fault)? {
             self.lowering.enter_subprogram();
         }
@@ -237,7 +237,7 @@ impl<R: BufRead> Program<R> {
     fn keep_remarks(&mut self) {
         let mut remarks = std::mem::take(&mut self.remarks);
         for (span, notice) in remarks.drain(..) {
-            if self.warnings.len() < MOST_WARNINGS {
+            if self.warnings.len() < MAX_WARNINGS {
                 let place = self.flow.place(span);
                 let warning = Warning::new(place, notice, self.flow.text());
                 self.warnings.push(warning);
@@ -285,7 +285,7 @@ impl<R: BufRead> Program<R> {
             self.waiting.clear();
             if self.flow.repeats() {
                 self.repeated_refusals += 1;
-                if self.repeated_refusals >= MOST_REPEATED_REFUSALS {
+                if self.repeated_refusals >= MAX_REPEATED_REFUSALS {
                     self.ended = true;
                 }
             }

@@ -34,7 +34,7 @@ impl<R: BufRead> Program<R> {
         String::from_utf8_lossy(self.flow.text())
     }
 
-    /// What should be known of the lines read so far; [`MOST_WARNINGS`](crate::MOST_WARNINGS)
+    /// What should be known of the lines read so far; [`MAX_WARNINGS`](crate::MAX_WARNINGS)
     /// at most.
     #[must_use]
     pub fn warnings(&self) -> &[Warning] {

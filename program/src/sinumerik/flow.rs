@@ -9,7 +9,7 @@ use crate::error::flow::FlowError;
 use crate::error::reason::Reason;
 use crate::flow::Flow;
 use crate::flow::tape::Tape;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::sinumerik::line::{Beginning, block_order};
 use crate::sinumerik::reader::Reader;
 use crate::text::place::Span;
@@ -17,7 +17,7 @@ use std::io::BufRead;
 
 impl<R: BufRead> Flow<R> {
     /// Obeys the line being run if it is about the order of lines; else where its words begin.
-    pub(crate) fn obey_order(&mut self, state: &mut Lowering) -> Result<Option<usize>, Fault> {
+    pub(crate) fn obey_order(&mut self, state: &mut Interpreter) -> Result<Option<usize>, Fault> {
         let beginning = Beginning::of(self.text());
         let Some(order) = beginning.order else {
             return Ok(Some(beginning.start));
@@ -90,7 +90,7 @@ impl<R: BufRead> Flow<R> {
         &mut self,
         reader: &mut Reader<'_>,
         span: Span,
-        state: &Lowering,
+        state: &Interpreter,
     ) -> Result<(), Fault> {
         loop {
             let holds = reader.expression(state)? != 0.0;
@@ -133,7 +133,7 @@ impl<R: BufRead> Flow<R> {
         &mut self,
         reader: &mut Reader<'_>,
         span: Span,
-        state: &mut Lowering,
+        state: &mut Interpreter,
         again: bool,
     ) -> Result<(), Fault> {
         let start = reader.at;
@@ -315,7 +315,7 @@ impl<R: BufRead> Flow<R> {
 }
 
 /// A condition with nothing behind it.
-fn condition(reader: &mut Reader<'_>, state: &Lowering) -> Result<bool, Fault> {
+fn condition(reader: &mut Reader<'_>, state: &Interpreter) -> Result<bool, Fault> {
     let value = reader.expression(state)?;
     match reader.next_item()? {
         None => Ok(value != 0.0),

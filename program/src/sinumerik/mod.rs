@@ -16,7 +16,7 @@ use crate::block::Block;
 use crate::block::codes::PathControl;
 use crate::error::reason::Reason;
 use crate::error::{Fault, Notice, Remark};
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::interpreter::tools::ToolTable;
 use crate::settings::Settings;
 use crate::sinumerik_ways::{extended_address, no_way};
@@ -30,7 +30,7 @@ use toolglide_kinematics::{Tolerance, ToolpathError};
 use words::{Known, known};
 
 /// Tools whose names are remembered.
-const MOST_TOOLS: usize = 1000;
+const MAX_TOOLS: usize = 1000;
 
 /// What a program has said that blocks of RS274/NGC cannot hold.
 #[derive(Debug, Default)]
@@ -42,7 +42,7 @@ pub(crate) struct Sinumerik {
 /// A line being read.
 pub(crate) struct Line<'a> {
     pub(crate) block: &'a mut Block,
-    pub(crate) state: &'a mut Lowering,
+    pub(crate) state: &'a mut Interpreter,
     remarks: &'a mut Vec<Remark>,
     pub(crate) frame: Option<(FrameWord, Span)>,
     /// Words X, Y and Z of a frame.
@@ -56,7 +56,7 @@ impl Sinumerik {
         &mut self,
         mut reader: Reader<'_>,
         block: &mut Block,
-        state: &mut Lowering,
+        state: &mut Interpreter,
         remarks: &mut Vec<Remark>,
     ) -> Result<(), Fault> {
         block.begin();
@@ -90,7 +90,7 @@ impl Sinumerik {
             return number;
         }
         let next = u32::try_from(self.tools.len()).unwrap_or(0) + 1 + table.largest();
-        if self.tools.len() < MOST_TOOLS {
+        if self.tools.len() < MAX_TOOLS {
             *self.tools.entry(name).or_insert(next)
         } else {
             next

@@ -6,7 +6,7 @@ use crate::block::codes::Way;
 use crate::error::Fault;
 use crate::error::arithmetic::ArithmeticError;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::text::number::number;
 use crate::text::place::Span;
 
@@ -102,7 +102,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The number between a letter and `=`, as in `R12=` and `R[2]=`.
-    pub(crate) fn extension(&mut self, state: &Lowering) -> Result<Option<u32>, Fault> {
+    pub(crate) fn extension(&mut self, state: &Interpreter) -> Result<Option<u32>, Fault> {
         let start = self.at;
         let number = self.parameter_number(state)?;
         if number.is_some() && self.equals_follows() {
@@ -129,7 +129,7 @@ impl<'a> Reader<'a> {
     /// `ACN( )` say whether it is a place or a step, and which way a rotary axis goes there.
     pub(crate) fn address_value(
         &mut self,
-        state: &Lowering,
+        state: &Interpreter,
         start: usize,
     ) -> Result<(f64, Option<Way>), Fault> {
         self.skip_blanks();
@@ -167,7 +167,7 @@ impl<'a> Reader<'a> {
     }
 
     /// An expression, or one within a way.
-    pub(crate) fn way_value(&mut self, state: &Lowering) -> Result<(f64, Option<Way>), Fault> {
+    pub(crate) fn way_value(&mut self, state: &Interpreter) -> Result<(f64, Option<Way>), Fault> {
         self.skip_blanks();
         let here = self.at;
         let way = match self.next_name().as_str() {
@@ -192,7 +192,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Values in round brackets, separated by commas; empty places are 0.
-    pub(crate) fn arguments(&mut self, state: &Lowering) -> Result<Vec<f64>, Fault> {
+    pub(crate) fn arguments(&mut self, state: &Interpreter) -> Result<Vec<f64>, Fault> {
         let mut list = Vec::new();
         self.skip_blanks();
         if self.peek() != Some(b'(') {
@@ -289,7 +289,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The number of an R parameter: digits, or an expression in square brackets.
-    pub(crate) fn parameter_number(&mut self, state: &Lowering) -> Result<Option<u32>, Fault> {
+    pub(crate) fn parameter_number(&mut self, state: &Interpreter) -> Result<Option<u32>, Fault> {
         let start = self.at;
         if self.peek() != Some(b'[') {
             let digits = length(self.rest(), |byte| byte.is_ascii_digit());

@@ -6,7 +6,7 @@
 use crate::error::Fault;
 use crate::error::arithmetic::ArithmeticError;
 use crate::error::reason::Reason;
-use crate::interpreter::Lowering;
+use crate::interpreter::Interpreter;
 use crate::sinumerik::reader::Reader;
 use crate::text::place::Span;
 
@@ -18,7 +18,7 @@ const COMPARISONS: [&[u8]; 6] = [b"==", b"<>", b">=", b"<=", b">", b"<"];
 
 impl Reader<'_> {
     /// An expression, as a number: what is true is 1.
-    pub(crate) fn expression(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    pub(crate) fn expression(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         let start = self.at;
         self.deepen(start)?;
         let mut value = self.logic(state)?;
@@ -62,7 +62,7 @@ impl Reader<'_> {
     }
 
     /// `AND` before `XOR` before `OR`.
-    fn logic(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    fn logic(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         let mut either = self.exclusive(state)?;
         while self.takes("OR") {
             let other = self.exclusive(state)?;
@@ -71,7 +71,7 @@ impl Reader<'_> {
         Ok(either)
     }
 
-    fn exclusive(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    fn exclusive(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         let mut one = self.both(state)?;
         while self.takes("XOR") {
             let other = self.both(state)?;
@@ -80,7 +80,7 @@ impl Reader<'_> {
         Ok(one)
     }
 
-    fn both(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    fn both(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         let mut both = self.sum(state)?;
         while self.takes("AND") {
             let other = self.sum(state)?;
@@ -89,7 +89,7 @@ impl Reader<'_> {
         Ok(both)
     }
 
-    fn sum(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    fn sum(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         let mut sum = self.product(state)?;
         loop {
             self.skip_blanks();
@@ -107,7 +107,7 @@ impl Reader<'_> {
         }
     }
 
-    fn product(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    fn product(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         let mut product = self.factor(state)?;
         loop {
             self.skip_blanks();
@@ -138,7 +138,7 @@ impl Reader<'_> {
         }
     }
 
-    fn factor(&mut self, state: &Lowering) -> Result<f64, Fault> {
+    fn factor(&mut self, state: &Interpreter) -> Result<f64, Fault> {
         self.skip_blanks();
         let start = self.at;
         match self.peek() {
@@ -175,7 +175,7 @@ impl Reader<'_> {
     }
 
     /// A variable, a function, or `NOT`.
-    fn named(&mut self, state: &Lowering, start: usize) -> Result<f64, Fault> {
+    fn named(&mut self, state: &Interpreter, start: usize) -> Result<f64, Fault> {
         let mut name = self.next_name();
         match name.as_str() {
             "TRUE" => return Ok(1.0),

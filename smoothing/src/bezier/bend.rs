@@ -8,11 +8,11 @@
 
 use super::quintic::{Offset, PARTS, Quintic};
 use crate::STRAIGHT;
-use crate::corner::shape::{Form, TurnShape};
+use crate::corner::shape::{BlendShape, Form};
 use toolglide_kinematics::{
-    Corner, Limits, Piece, Sample, Serves, Tangential, Vector, largest_multiple,
+    Corner, Limits, MoveRange, PathLimits, Piece, Sample, Vector, largest_multiple,
 };
-use toolglide_profiles::{Boundary, Connection};
+use toolglide_profiles::{Boundary, SCurveBoundary};
 
 /// Pieces of one corner: its parts, and one on each straight side.
 pub(super) const PIECES: usize = PARTS + 2;
@@ -32,7 +32,7 @@ const SMALLEST: f64 = 1e-3;
 
 /// A rounded corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bend {
+pub(super) struct BezierBlend {
     /// The first half of the control points in units of their distance.
     offsets: [Offset; PARTS / 2 + 1],
     /// Distance between control points; zero where the corner is not rounded.
@@ -43,7 +43,7 @@ pub(super) struct Bend {
     pub(super) speed: f64,
 }
 
-impl Bend {
+impl BezierBlend {
     /// A full stop at the corner itself.
     pub(super) const STOP: Self = Self {
         offsets: [[0.0; 2]; PARTS / 2 + 1],
@@ -57,7 +57,7 @@ impl Bend {
     pub(super) fn new<const N: usize>(
         corner: &Corner<N>,
         lengths: [f64; 2],
-        legs: [&Tangential; 2],
+        legs: [&PathLimits; 2],
         limits: &Limits<N>,
     ) -> Self {
         let (half_sine, half_cosine) = (corner.half_turn_sine(), corner.half_turn_cosine());
@@ -114,16 +114,16 @@ impl Bend {
 
     /// How the straight parts before and after see the corner at a speed: as a stop where that is
     /// faster.
-    pub(super) fn turn(&self, speed: f64, legs: [&Tangential; 2]) -> TurnShape {
+    pub(super) fn turn(&self, speed: f64, legs: [&PathLimits; 2]) -> BlendShape {
         if self.is_faster_than_a_stop(speed, legs) {
             let boundary = Boundary {
                 distance: self.reach,
                 speed,
                 acceleration: 0.0,
             };
-            TurnShape::symmetric(boundary, 0.0, Form::Through)
+            BlendShape::symmetric(boundary, 0.0, Form::Through)
         } else {
-            TurnShape::STOP
+            BlendShape::STOP
         }
     }
 
@@ -132,7 +132,7 @@ impl Bend {
         &self,
         corner: &Corner<N>,
         speed: f64,
-        serves: Serves,
+        serves: MoveRange,
         mut take: impl FnMut(Piece<N>),
     ) {
         if self.spacing <= 0.0 || speed <= 0.0 {
@@ -205,13 +205,13 @@ impl Bend {
     }
 
     /// Whether the corner takes less time at a speed than coming to rest within its reach.
-    fn is_faster_than_a_stop(&self, speed: f64, legs: [&Tangential; 2]) -> bool {
+    fn is_faster_than_a_stop(&self, speed: f64, legs: [&PathLimits; 2]) -> bool {
         if speed <= 0.0 {
             return false;
         }
         let mut stop = 0.0;
         for leg in legs {
-            let connection = Connection {
+            let connection = SCurveBoundary {
                 from: [0.0, 0.0],
                 to: [speed, 0.0],
                 limits: *leg,

@@ -4,14 +4,14 @@
 //! scales turns that have speeds alone, over links that are the straight parts of the legs; that a
 //! stop always fits is its promise. Not here: the corners themselves.
 
-use super::bend::{Bend, PIECES};
-use crate::corner::shape::TurnShape;
-use crate::lookahead::unroll::{MOST_PIECES, corner_between, unroll_leg};
+use super::bend::{BezierBlend, PIECES};
+use crate::corner::shape::BlendShape;
+use crate::lookahead::unroll::{MAX_PIECES, corner_between, unroll_leg};
 use crate::lookahead::window::{Link, Window};
-use crate::segment::Leg;
-use crate::segment_merger::{Merger, ROUNDING_SHARE, Vertex};
+use crate::segment::Segment;
+use crate::segment_merger::{ROUNDING_SHARE, SegmentMerger, Vertex};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Pause, Piece, Serves, Vector};
+use toolglide_kinematics::{Limits, MoveRange, Pause, Piece, Vector};
 
 /// Corners that the look-ahead window sees.
 const WINDOW: usize = 256;
@@ -20,20 +20,20 @@ const WINDOW: usize = 256;
 #[derive(Clone, Debug)]
 pub(super) struct Course<const N: usize> {
     limits: Limits<N>,
-    merger: Merger<N>,
+    merger: SegmentMerger<N>,
     /// The last leg, whose end is still open.
-    pending: Option<Leg<N>>,
+    pending: Option<Segment<N>>,
     /// The corner at its start.
-    corner: Bend,
+    corner: BezierBlend,
     /// Whether the window has been given a link.
     begun: bool,
     window: Window,
     /// Speeds of the next corners, as far as they are decided.
     speeds: VecDeque<f64>,
     /// Legs that have not been unrolled, each with the corner at its end.
-    legs: VecDeque<(Leg<N>, Bend)>,
+    legs: VecDeque<(Segment<N>, BezierBlend)>,
     /// How the next leg to be unrolled begins.
-    from: TurnShape,
+    from: BlendShape,
     pieces: VecDeque<Piece<N>>,
 }
 
@@ -41,15 +41,15 @@ impl<const N: usize> Course<N> {
     pub(super) fn new(start: Vector<N>, limits: Limits<N>) -> Self {
         Self {
             limits,
-            merger: Merger::new(start, limits, ROUNDING_SHARE),
+            merger: SegmentMerger::new(start, limits, ROUNDING_SHARE),
             pending: None,
-            corner: Bend::STOP,
+            corner: BezierBlend::STOP,
             begun: false,
             window: Window::new(WINDOW, false),
             speeds: VecDeque::with_capacity(WINDOW + 4),
             legs: VecDeque::with_capacity(2 * WINDOW + 8),
-            from: TurnShape::STOP,
-            pieces: VecDeque::with_capacity(PIECES + MOST_PIECES + 1),
+            from: BlendShape::STOP,
+            pieces: VecDeque::with_capacity(PIECES + MAX_PIECES + 1),
         }
     }
 
@@ -87,7 +87,7 @@ impl<const N: usize> Course<N> {
             self.pause(carried);
         }
         if let Some(last) = self.pending.take() {
-            self.settle(last, Bend::STOP);
+            self.settle(last, BezierBlend::STOP);
             self.window.finish();
             self.decide();
             self.speeds.push_back(0.0);
@@ -118,14 +118,14 @@ impl<const N: usize> Course<N> {
     }
 
     /// Takes a leg, which completes the corner at its start.
-    fn take_leg(&mut self, leg: Leg<N>) {
+    fn take_leg(&mut self, leg: Segment<N>) {
         if let Some(last) = self.pending.replace(leg) {
             let bend = if last.stop {
-                Bend::STOP
+                BezierBlend::STOP
             } else {
                 let corner = corner_between(&last, &leg, last.room().min(leg.room()));
                 let lengths = [last.length, leg.length];
-                Bend::new(&corner, lengths, [&last.limits, &leg.limits], &self.limits)
+                BezierBlend::new(&corner, lengths, [&last.limits, &leg.limits], &self.limits)
             };
             self.settle(last, bend);
             self.decide();
@@ -133,14 +133,14 @@ impl<const N: usize> Course<N> {
     }
 
     /// Gives the window a leg whose two corners are known.
-    fn settle(&mut self, leg: Leg<N>, end: Bend) {
+    fn settle(&mut self, leg: Segment<N>, end: BezierBlend) {
         let link = Link {
             length: (leg.length - self.corner.reach - end.reach).max(0.0),
             limits: leg.limits,
         };
         if self.begun {
             self.window
-                .push(TurnShape::through(self.corner.speed), link);
+                .push(BlendShape::through(self.corner.speed), link);
         } else {
             self.window.begin(link);
             self.begun = true;
@@ -162,7 +162,7 @@ impl<const N: usize> Course<N> {
         };
         let next = self.legs.front().map(|(next, _)| next);
         let next = next.or(self.pending.as_ref());
-        let to = next.map_or(TurnShape::STOP, |next| {
+        let to = next.map_or(BlendShape::STOP, |next| {
             bend.turn(speed, [&leg.limits, &next.limits])
         });
         let pieces = &mut self.pieces;
@@ -174,7 +174,7 @@ impl<const N: usize> Course<N> {
         }
         if let Some(next) = next {
             let corner = corner_between(&leg, next, leg.room().min(next.room()));
-            let serves = Serves {
+            let serves = MoveRange {
                 first: leg.serves.first,
                 last: next.serves.last,
             };

@@ -13,8 +13,8 @@ use crate::chords::Chords;
 use crate::segment_merger::{MERGE_SHARE, Vertex};
 use course::Course;
 use toolglide_kinematics::{
-    Intake, Limits, MotionPlanner, Move, Path, Pause, Piece, Plan, PlanError, Serves, Toolpath,
-    Vector,
+    Limits, MotionPlanner, Move, MoveRange, Path, PathCursor, Pause, Piece, Plan, PlanError,
+    Toolpath, Vector,
 };
 
 /// Plans corners of curvature-optimal quintics while the path is being read.
@@ -33,7 +33,7 @@ use toolglide_kinematics::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct BezierSmoothing<const N: usize> {
-    intake: Intake<N>,
+    intake: PathCursor<N>,
     arc: Option<(Chords<N>, Move<N>, u32)>,
     course: Box<Course<N>>,
 }
@@ -43,7 +43,7 @@ impl<const N: usize> BezierSmoothing<N> {
     #[must_use]
     pub fn new(start: Vector<N>, limits: Limits<N>) -> Self {
         Self {
-            intake: Intake::new(start),
+            intake: PathCursor::new(start),
             arc: None,
             course: Box::new(Course::new(start, limits)),
         }
@@ -76,7 +76,7 @@ impl<const N: usize> BezierSmoothing<N> {
             bulge,
             feedrate: step.feedrate().speed(),
             tolerance: step.tolerance(),
-            serves: Serves::one(index),
+            serves: MoveRange::one(index),
             next: 0,
         });
     }
@@ -99,7 +99,7 @@ impl<const N: usize> MotionPlanner<N> for BezierSmoothing<N> {
             }
             Path::Dwell { duration } => self.course.dwell(Pause {
                 duration: *duration,
-                serves: Serves::one(index),
+                serves: MoveRange::one(index),
                 end: self.intake.end(),
             }),
         }

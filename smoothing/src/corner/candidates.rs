@@ -4,12 +4,12 @@
 //! short moves.
 
 use crate::corner::interrupted::Interrupted;
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::corner::stop_start::StopStart;
 use crate::corner::uninterrupted::Uninterrupted;
 use crate::method::{Method, Settings};
-use toolglide_kinematics::{Corner, Limits, Tangential};
-use toolglide_profiles::{Blender, Boundary, Rise};
+use toolglide_kinematics::{Corner, Limits, PathLimits};
+use toolglide_profiles::{Blender, Boundary, SpeedRamp};
 
 /// How the motions of one window are selected.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +64,7 @@ impl<const N: usize> Selection<N> {
     }
 
     /// The uninterrupted corner as if the moves beside it were long.
-    pub(crate) fn unscaled(&self, corner: &Corner<N>) -> Option<TurnShape> {
+    pub(crate) fn unscaled(&self, corner: &Corner<N>) -> Option<BlendShape> {
         self.uninterrupted
             .blend(corner)
             .ok()
@@ -72,14 +72,14 @@ impl<const N: usize> Selection<N> {
     }
 
     /// The interrupted corner as if the moves beside it were long.
-    pub(crate) fn interrupted(&self, corner: &Corner<N>) -> TurnShape {
+    pub(crate) fn interrupted(&self, corner: &Corner<N>) -> BlendShape {
         self.interrupted
             .blend(corner)
-            .map_or(TurnShape::STOP, |turn| *turn.shape())
+            .map_or(BlendShape::STOP, |turn| *turn.shape())
     }
 
     /// The motion for a corner between moves of two lengths.
-    pub(crate) fn shape(&self, corner: &Corner<N>, before: f64, after: f64) -> TurnShape {
+    pub(crate) fn shape(&self, corner: &Corner<N>, before: f64, after: f64) -> BlendShape {
         let interrupted = || self.interrupted.blend(corner).map(|turn| *turn.shape());
         let uninterrupted = || self.uninterrupted.blend(corner).map(|turn| *turn.shape());
         let shape = match self.kind {
@@ -104,7 +104,7 @@ impl<const N: usize> Selection<N> {
                 fastest
             }
         };
-        shape.unwrap_or(TurnShape::STOP)
+        shape.unwrap_or(BlendShape::STOP)
     }
 
     /// The turn that loses less time against passing the corner at the speeds that the moves reach.
@@ -113,12 +113,12 @@ impl<const N: usize> Selection<N> {
         corner: &Corner<N>,
         before: f64,
         after: f64,
-        one: TurnShape,
-        other: TurnShape,
-    ) -> TurnShape {
+        one: BlendShape,
+        other: BlendShape,
+    ) -> BlendShape {
         let before = (self.limits.along(&corner.incoming), corner.speed_in, before);
         let after = (self.limits.along(&corner.outgoing), corner.speed_out, after);
-        let loss = |shape: &TurnShape| {
+        let loss = |shape: &BlendShape| {
             shape.duration
                 + lost_beside(&shape.entry, &before.0, before.1, before.2)
                 + lost_beside(&shape.exit, &after.0, after.1, after.2)
@@ -133,11 +133,11 @@ impl<const N: usize> Selection<N> {
 
 /// Time from the boundary of a turn to the speed that a move reaches, less the time that the whole
 /// way from the corner would take at that speed.
-fn lost_beside(boundary: &Boundary, limits: &Tangential, feedrate: f64, length: f64) -> f64 {
-    let least = Rise::least_peak(boundary.speed, boundary.acceleration, limits.jerk);
+fn lost_beside(boundary: &Boundary, limits: &PathLimits, feedrate: f64, length: f64) -> f64 {
+    let least = SpeedRamp::least_peak(boundary.speed, boundary.acceleration, limits.jerk);
     let reached = (0.25 * limits.jerk * length * length).cbrt(); // rest to rest over the move
     let peak = reached.min(feedrate).max(least);
-    let rise = Rise::to_peak(
+    let rise = SpeedRamp::to_peak(
         boundary.speed,
         boundary.acceleration,
         peak,

@@ -3,7 +3,7 @@
 //! Source: section 2.2.2 and 2.3, equations 2.19 to 2.33, in vector form; a corner whose speed the
 //! feedrate limits is the same motion at that speed. Not here: how corners share a short move.
 
-use crate::corner::shape::{Form, Turn, TurnShape};
+use crate::corner::shape::{BlendShape, CornerBlend, Form};
 use toolglide_kinematics::{Corner, Limits, largest_multiple};
 use toolglide_profiles::{BlendError, Blender, Boundary};
 
@@ -42,15 +42,15 @@ impl<const N: usize> Interrupted<N> {
 }
 
 impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
-    type Motion = Turn<N>;
+    type Motion = CornerBlend<N>;
 
     /// Never fails: going straight on is a turn of no duration.
-    fn blend(&self, corner: &Corner<N>) -> Result<Turn<N>, BlendError> {
+    fn blend(&self, corner: &Corner<N>) -> Result<CornerBlend<N>, BlendError> {
         let turned = corner.outgoing - corner.incoming;
         let feedrate = corner.speed_in.min(corner.speed_out);
         let size = turned.norm();
         if size <= crate::STRAIGHT {
-            return Ok(Turn::new(TurnShape::through(feedrate), *corner));
+            return Ok(CornerBlend::new(BlendShape::through(feedrate), *corner));
         }
         let acceleration = largest_multiple(&turned, self.limits.acceleration());
         let jerk = largest_multiple(&turned, self.limits.jerk());
@@ -58,8 +58,8 @@ impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
         let speed = speed_for_error(error, acceleration, jerk).min(feedrate);
         let (ramp, hold) = ramps(speed, acceleration, jerk);
         let duration = 2.0 * ramp + hold;
-        Ok(Turn::new(
-            TurnShape::symmetric(
+        Ok(CornerBlend::new(
+            BlendShape::symmetric(
                 Boundary {
                     distance: 0.5 * speed * duration,
                     speed,

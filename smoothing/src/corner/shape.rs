@@ -4,7 +4,7 @@
 //! the outgoing direction. Not here: how large it may be, see the blenders.
 
 use crate::corner::stop_start::Start;
-use toolglide_kinematics::{Corner, Piece, Sample, Serves, Vector};
+use toolglide_kinematics::{Corner, MoveRange, Piece, Sample, Vector};
 use toolglide_profiles::{Boundary, CornerMotion};
 
 /// How the velocity turns.
@@ -31,7 +31,7 @@ pub enum Form {
 
 /// A corner motion without its geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TurnShape {
+pub struct BlendShape {
     /// Where and how it leaves the incoming move.
     pub entry: Boundary,
     /// Where and how it joins the outgoing move.
@@ -42,7 +42,7 @@ pub struct TurnShape {
     pub form: Form,
 }
 
-impl TurnShape {
+impl BlendShape {
     /// A full stop at the corner itself.
     pub const STOP: Self = Self::through(0.0);
 
@@ -112,19 +112,19 @@ fn scaled(boundary: &Boundary, scale: f64) -> Boundary {
 
 /// A corner motion with its geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn<const N: usize> {
-    shape: TurnShape,
+pub struct CornerBlend<const N: usize> {
+    shape: BlendShape,
     corner: Corner<N>,
 }
 
-impl<const N: usize> Turn<N> {
-    pub(crate) fn new(shape: TurnShape, corner: Corner<N>) -> Self {
+impl<const N: usize> CornerBlend<N> {
+    pub(crate) fn new(shape: BlendShape, corner: Corner<N>) -> Self {
         Self { shape, corner }
     }
 
     /// The motion without its geometry.
     #[must_use]
-    pub fn shape(&self) -> &TurnShape {
+    pub fn shape(&self) -> &BlendShape {
         &self.shape
     }
 
@@ -135,8 +135,8 @@ impl<const N: usize> Turn<N> {
     }
 
     /// Unrolls a part of the motion, phase by phase; nothing for a full stop.
-    pub fn pieces(&self, part: Part, serves: Serves, mut take: impl FnMut(Piece<N>)) {
-        let TurnShape {
+    pub fn pieces(&self, part: Part, serves: MoveRange, mut take: impl FnMut(Piece<N>)) {
+        let BlendShape {
             entry,
             exit,
             duration,
@@ -242,7 +242,7 @@ fn after<const N: usize>(state: &Sample<N>, time: f64) -> Sample<N> {
     }
 }
 
-impl<const N: usize> CornerMotion for Turn<N> {
+impl<const N: usize> CornerMotion for CornerBlend<N> {
     fn duration(&self) -> f64 {
         self.shape.duration
     }
@@ -256,7 +256,7 @@ impl<const N: usize> CornerMotion for Turn<N> {
     }
 
     fn corner_error(&self) -> f64 {
-        let TurnShape {
+        let BlendShape {
             entry,
             exit,
             duration,

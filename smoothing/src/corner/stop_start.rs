@@ -5,7 +5,7 @@
 //! corner as its case of a single jerk phase. Where that corner is limited by acceleration, this one
 //! turns up to four hundredths faster. Not here: unequal speeds.
 
-use crate::corner::shape::{Form, Turn, TurnShape};
+use crate::corner::shape::{BlendShape, CornerBlend, Form};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, Limits, Vector, largest_multiple};
 use toolglide_profiles::{BlendError, Blender, Boundary};
@@ -44,12 +44,12 @@ impl<const N: usize> StopStart<N> {
 }
 
 impl<const N: usize> Blender<Corner<N>> for StopStart<N> {
-    type Motion = Turn<N>;
+    type Motion = CornerBlend<N>;
 
     /// # Errors
     /// [`BlendError::Straight`] where the path goes straight on, and [`BlendError::Impossible`] where
     /// one jerk phase is all there is, which is the uninterrupted corner.
-    fn blend(&self, corner: &Corner<N>) -> Result<Turn<N>, BlendError> {
+    fn blend(&self, corner: &Corner<N>) -> Result<CornerBlend<N>, BlendError> {
         let half_sine = corner.half_turn_sine();
         if 2.0 * half_sine <= crate::STRAIGHT {
             return Err(BlendError::Straight {
@@ -103,8 +103,8 @@ impl<const N: usize> Blender<Corner<N>> for StopStart<N> {
                 reason: "its jerk never reaches the acceleration limit",
             });
         }
-        Ok(Turn::new(
-            TurnShape::symmetric(
+        Ok(CornerBlend::new(
+            BlendShape::symmetric(
                 Boundary {
                     distance: start.distance_at(duration),
                     speed: start.speed_at(duration),

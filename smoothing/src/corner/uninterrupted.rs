@@ -5,10 +5,10 @@
 //! is a cubic Bezier curve whose two inner control points are the corner. Not here: how corners share a
 //! short move.
 
-use crate::corner::shape::{Form, Turn, TurnShape};
+use crate::corner::shape::{BlendShape, CornerBlend, Form};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
-use toolglide_kinematics::{Corner, Limits, Tangential, largest_multiple};
-use toolglide_profiles::{BlendError, Blender, Boundary, Rise};
+use toolglide_kinematics::{Corner, Limits, PathLimits, largest_multiple};
+use toolglide_profiles::{BlendError, Blender, Boundary, SpeedRamp};
 
 /// Turns a corner with one phase of constant jerk, losing speed into it and regaining it after.
 ///
@@ -59,12 +59,12 @@ impl<const N: usize> Uninterrupted<N> {
 }
 
 impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
-    type Motion = Turn<N>;
+    type Motion = CornerBlend<N>;
 
     /// # Errors
     /// [`BlendError::Straight`] where the path goes straight on: this motion would slow down for
     /// nothing.
-    fn blend(&self, corner: &Corner<N>) -> Result<Turn<N>, BlendError> {
+    fn blend(&self, corner: &Corner<N>) -> Result<CornerBlend<N>, BlendError> {
         let half_sine = corner.half_turn_sine();
         if 2.0 * half_sine <= crate::STRAIGHT {
             return Err(BlendError::Straight {
@@ -89,7 +89,7 @@ impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
             speed_in: corner.speed_in,
             speed_out: corner.speed_out,
         };
-        Ok(Turn::new(family.fastest(), *corner))
+        Ok(CornerBlend::new(family.fastest(), *corner))
     }
 }
 
@@ -102,8 +102,8 @@ struct Family {
     acceleration: f64,
     /// Largest factor of the jerk vector `incoming + ratio * outgoing`.
     jerk: f64,
-    before: Tangential,
-    after: Tangential,
+    before: PathLimits,
+    after: PathLimits,
     speed_in: f64,
     speed_out: f64,
 }
@@ -111,7 +111,7 @@ struct Family {
 impl Family {
     /// The fastest of the family, from which the acceleration can run out below the feedrate on both
     /// sides; the printed method forgets the latter.
-    fn fastest(&self) -> TurnShape {
+    fn fastest(&self) -> BlendShape {
         let reach = self.error / self.error_per_reach;
         let by_acceleration = (0.5 * self.acceleration * reach).sqrt(); // 2.43
         let by_jerk_cubed = 0.5 * self.jerk * reach * reach; // 2.42
@@ -136,14 +136,14 @@ impl Family {
         }
     }
 
-    fn shape(&self, speed: f64, acceleration: f64) -> TurnShape {
+    fn shape(&self, speed: f64, acceleration: f64) -> BlendShape {
         let duration = 2.0 * speed / acceleration;
         let entry = Boundary {
             distance: speed * duration / 3.0,
             speed,
             acceleration,
         };
-        TurnShape {
+        BlendShape {
             entry,
             exit: Boundary {
                 distance: self.ratio * entry.distance,
@@ -157,7 +157,7 @@ impl Family {
 
     /// The largest speed up to `most` from which the acceleration can run out below the feedrate; the
     /// peak grows with the speed, so the bound is searched.
-    fn slowed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> TurnShape {
+    fn slowed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> BlendShape {
         let (mut low, mut high) = (
             0.0,
             most.min(self.speed_in).min(self.speed_out / self.ratio),
@@ -174,18 +174,18 @@ impl Family {
         shape(low)
     }
 
-    fn runs_out(&self, shape: &TurnShape) -> bool {
+    fn runs_out(&self, shape: &BlendShape) -> bool {
         let peak = |boundary: &Boundary, jerk| {
-            Rise::least_peak(boundary.speed, boundary.acceleration, jerk)
+            SpeedRamp::least_peak(boundary.speed, boundary.acceleration, jerk)
         };
         peak(&shape.entry, self.before.jerk) <= self.speed_in
             && peak(&shape.exit, self.after.jerk) <= self.speed_out
     }
 
     /// Time lost against passing at the feedrate.
-    fn loss(&self, shape: &TurnShape) -> f64 {
-        let beside = |boundary: &Boundary, limits: &Tangential, feedrate: f64| {
-            let rise = Rise::to_peak(
+    fn loss(&self, shape: &BlendShape) -> f64 {
+        let beside = |boundary: &Boundary, limits: &PathLimits, feedrate: f64| {
+            let rise = SpeedRamp::to_peak(
                 boundary.speed,
                 boundary.acceleration,
                 feedrate,

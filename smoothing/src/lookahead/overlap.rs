@@ -5,11 +5,11 @@
 //! equal halves, one of whose two roots leaves the path. Not here: which corners overlap, and the two
 //! jerks.
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::lookahead::two_jerks::{Marks, Middle, TwoJerks, solve};
-use crate::segment::Leg;
+use crate::segment::Segment;
 use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK};
-use toolglide_kinematics::{Limits, Piece, Sample, Serves, Vector};
+use toolglide_kinematics::{Limits, MoveRange, Piece, Sample, Vector};
 
 /// Durations tried, as shares of the distance over the mean speed.
 const SHORTEST: f64 = 0.6;
@@ -23,19 +23,19 @@ const PARTS: usize = 4;
 
 /// A leg between two corners, with the legs beside it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Between<'a, const N: usize> {
-    pub(crate) before: &'a Leg<N>,
-    pub(crate) leg: &'a Leg<N>,
-    pub(crate) after: &'a Leg<N>,
+pub(crate) struct OverlappedPair<'a, const N: usize> {
+    pub(crate) before: &'a Segment<N>,
+    pub(crate) leg: &'a Segment<N>,
+    pub(crate) after: &'a Segment<N>,
 }
 
-impl<const N: usize> Between<'_, N> {
+impl<const N: usize> OverlappedPair<'_, N> {
     /// The least duration found from the middle of one corner to the middle of the next, or `None`
     /// when these two cannot overlap, or not in less than `most`.
     pub(crate) fn duration(
         &self,
-        from: &TurnShape,
-        to: &TurnShape,
+        from: &BlendShape,
+        to: &BlendShape,
         limits: &Limits<N>,
         most: f64,
     ) -> Option<f64> {
@@ -81,8 +81,8 @@ impl<const N: usize> Between<'_, N> {
     /// The motion from middle to middle over a duration that was found to fit.
     pub(crate) fn pieces(
         &self,
-        from: &TurnShape,
-        to: &TurnShape,
+        from: &BlendShape,
+        to: &BlendShape,
         duration: f64,
         mut take: impl FnMut(Piece<N>),
     ) {
@@ -91,7 +91,7 @@ impl<const N: usize> Between<'_, N> {
             debug_assert!(false, "an overlap was chosen that does not exist");
             return;
         };
-        let serves = Serves {
+        let serves = MoveRange {
             first: self.before.serves.first,
             last: self.after.serves.last,
         };
@@ -105,7 +105,7 @@ impl<const N: usize> Between<'_, N> {
         });
     }
 
-    fn middles(&self, from: &TurnShape, to: &TurnShape) -> (Middle<N>, Middle<N>) {
+    fn middles(&self, from: &BlendShape, to: &BlendShape) -> (Middle<N>, Middle<N>) {
         let Self { before, leg, after } = self;
         (
             Middle::of(from, &leg.start, &before.direction, &leg.direction),

@@ -3,15 +3,15 @@
 //! Source: section 3.3.1; lengths go with the cube of the scale. Not here: the order in which corners
 //! are looked at, see the window.
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::lookahead::window::{Link, Node};
 use toolglide_kinematics::numeric::{CLOSURE, SEARCH_PRECISION};
-use toolglide_profiles::{Boundary, Connection, Rise};
+use toolglide_profiles::{Boundary, SCurveBoundary, SpeedRamp};
 
 /// Speed that is reached when the acceleration at the boundary of a turn runs out on `link`.
 #[inline]
 fn peak(boundary: &Boundary, link: &Link) -> f64 {
-    Rise::least_peak(boundary.speed, boundary.acceleration, link.limits.jerk)
+    SpeedRamp::least_peak(boundary.speed, boundary.acceleration, link.limits.jerk)
 }
 
 /// Largest scale whose peak stays below the feedrate.
@@ -57,15 +57,15 @@ pub(crate) fn balance(left: &Boundary, right: &Boundary, link: &Link) -> Option<
 /// Length left over on `link` by two scaled turns and the shortest connection between them.
 #[inline]
 fn room(
-    left: &TurnShape,
+    left: &BlendShape,
     left_scale: f64,
-    right: &TurnShape,
+    right: &BlendShape,
     right_scale: f64,
     link: &Link,
 ) -> f64 {
     let left = left.scaled(left_scale).exit;
     let right = right.scaled(right_scale).entry;
-    let connection = Connection {
+    let connection = SCurveBoundary {
         from: [left.speed, left.acceleration],
         to: [right.speed, right.acceleration],
         limits: link.limits,

@@ -4,7 +4,7 @@
 //! between them, in closed form; the durations at which an axis gains or loses its pair are roots of
 //! two quadratics. Not here: whether limits are kept.
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::numeric::CLOSURE;
 
@@ -18,7 +18,7 @@ pub(crate) struct Middle<const N: usize> {
 
 impl<const N: usize> Middle<N> {
     pub(crate) fn of(
-        shape: &TurnShape,
+        shape: &BlendShape,
         point: &Vector<N>,
         incoming: &Vector<N>,
         outgoing: &Vector<N>,
@@ -44,18 +44,18 @@ pub(crate) struct TwoJerks {
 }
 
 /// Most durations at which some axis gains or loses its pair of jerks: four an axis, and both ends.
-const MOST_MARKS: usize = 4 * 8 + 2;
+const MAX_MARKS: usize = 4 * 8 + 2;
 
 /// Durations at which some axis gains or loses its pair of jerks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Marks {
-    at: [f64; MOST_MARKS],
+    at: [f64; MAX_MARKS],
     count: usize,
 }
 
 impl Marks {
     pub(crate) fn between(shortest: f64, longest: f64) -> Self {
-        let mut at = [longest; MOST_MARKS];
+        let mut at = [longest; MAX_MARKS];
         at[0] = shortest;
         Self { at, count: 2 }
     }
@@ -80,7 +80,7 @@ impl Marks {
             [a1, -(4.0 * v1 + 2.0 * v0), 6.0 * s],
         ] {
             for root in roots(a, b, c) {
-                if root > self.at[0] && root < self.at[1] && self.count < MOST_MARKS {
+                if root > self.at[0] && root < self.at[1] && self.count < MAX_MARKS {
                     self.at[self.count] = root;
                     self.count += 1;
                 }

@@ -3,33 +3,33 @@
 //! Source: sections 3.2 and 3.3. Each leg and each corner is anchored at programmed points, so that
 //! rounding does not add up along the path. Not here: the choice of the corner.
 
-use crate::corner::shape::{Part, Turn, TurnShape};
-use crate::segment::Leg;
-use toolglide_kinematics::{Corner, Piece, Sample, Serves, Tolerance};
-use toolglide_profiles::{Connection, Feed, ProfileError};
+use crate::corner::shape::{BlendShape, CornerBlend, Part};
+use crate::segment::Segment;
+use toolglide_kinematics::{Corner, MoveRange, Piece, Sample, Tolerance};
+use toolglide_profiles::{ProfileError, SCurve, SCurveBoundary};
 
 /// Most pieces of a leg, its corner and a pause.
-pub(crate) const MOST_PIECES: usize = 16;
+pub(crate) const MAX_PIECES: usize = 16;
 
 fn feed_on<const N: usize>(
-    leg: &Leg<N>,
-    from: &TurnShape,
-    to: &TurnShape,
-) -> Result<Feed, ProfileError> {
-    let connection = Connection {
+    leg: &Segment<N>,
+    from: &BlendShape,
+    to: &BlendShape,
+) -> Result<SCurve, ProfileError> {
+    let connection = SCurveBoundary {
         from: [from.exit.speed, from.exit.acceleration],
         to: [to.entry.speed, to.entry.acceleration],
         limits: leg.limits,
     };
     let length = leg.length - from.exit.distance - to.entry.distance;
-    Feed::over(length.max(0.0), &connection)
+    SCurve::over(length.max(0.0), &connection)
 }
 
 /// Unrolls the leg between two corner motions.
 pub(crate) fn unroll_leg<const N: usize>(
-    leg: &Leg<N>,
-    from: &TurnShape,
-    to: &TurnShape,
+    leg: &Segment<N>,
+    from: &BlendShape,
+    to: &BlendShape,
     mut take: impl FnMut(Piece<N>),
 ) {
     let (reach, left) = (from.exit.distance, to.entry.distance);
@@ -74,8 +74,8 @@ pub(crate) fn unroll_leg<const N: usize>(
 
 /// The corner between two legs.
 pub(crate) fn corner_between<const N: usize>(
-    leg: &Leg<N>,
-    next: &Leg<N>,
+    leg: &Segment<N>,
+    next: &Segment<N>,
     tolerance: Tolerance,
 ) -> Corner<N> {
     Corner {
@@ -90,16 +90,16 @@ pub(crate) fn corner_between<const N: usize>(
 
 /// Unrolls a part of the corner motion between two legs.
 pub(crate) fn unroll_corner<const N: usize>(
-    shape: &TurnShape,
+    shape: &BlendShape,
     part: Part,
     corner: Corner<N>,
-    leg: &Leg<N>,
-    next: &Leg<N>,
+    leg: &Segment<N>,
+    next: &Segment<N>,
     take: impl FnMut(Piece<N>),
 ) {
-    let serves = Serves {
+    let serves = MoveRange {
         first: leg.serves.first,
         last: next.serves.last,
     };
-    Turn::new(*shape, corner).pieces(part, serves, take);
+    CornerBlend::new(*shape, corner).pieces(part, serves, take);
 }

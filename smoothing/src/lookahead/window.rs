@@ -8,10 +8,10 @@
 //! corner, and the forward pass never leaves it: a safe stop always exists. Not here: which kind of
 //! motion a corner gets.
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::lookahead::scale::{balance, feed_cap, furthest, reachable};
 use std::collections::VecDeque;
-use toolglide_kinematics::Tangential;
+use toolglide_kinematics::PathLimits;
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 
 /// A backward pass waits until of the nodes that it looks at at most so many times as many are old as are new.
@@ -19,20 +19,20 @@ const PASSES: usize = 2;
 
 /// Fewest new nodes that a pass waits for: a corner that is fixed before the next one is known leaves it too little of the
 /// move between them.
-const FEWEST_FRESH: usize = 2;
+const MIN_FRESH: usize = 2;
 
 /// A straight move as the window sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Link {
     pub(crate) length: f64,
     /// Limits along the move; the velocity is the feedrate where that is lower.
-    pub(crate) limits: Tangential,
+    pub(crate) limits: PathLimits,
 }
 
 /// A corner in the window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
-    pub(crate) shape: TurnShape,
+    pub(crate) shape: BlendShape,
     /// No scale above this is tried.
     pub(crate) cap: f64,
     /// Largest scale from which the end of the window is known to be reachable.
@@ -44,7 +44,7 @@ pub(crate) struct Node {
 }
 
 impl Node {
-    fn new(shape: TurnShape, upper: f64) -> Self {
+    fn new(shape: BlendShape, upper: f64) -> Self {
         Self {
             shape,
             cap: 1.0,
@@ -104,11 +104,11 @@ impl Window {
 
     /// Begins again at rest.
     pub(crate) fn restart(&mut self) {
-        self.restart_after(TurnShape::STOP);
+        self.restart_after(BlendShape::STOP);
     }
 
     /// Begins again with the exit of a motion; whether a stop can be reached from it is not known.
-    pub(crate) fn restart_after(&mut self, shape: TurnShape) {
+    pub(crate) fn restart_after(&mut self, shape: BlendShape) {
         self.nodes.clear();
         self.nodes.push_back(Node::new(shape, 1.0));
         self.links.clear();
@@ -137,7 +137,7 @@ impl Window {
     }
 
     /// Takes the corner at the end of the last move, and the move after it.
-    pub(crate) fn push(&mut self, shape: TurnShape, link: Link) {
+    pub(crate) fn push(&mut self, shape: BlendShape, link: Link) {
         let mut node = Node::new(shape, 0.0);
         if let (Some(before), Some(last)) = (self.links.back(), self.nodes.back_mut()) {
             node.cap = feed_cap(&shape.entry, before).min(feed_cap(&shape.exit, &link));
@@ -157,7 +157,7 @@ impl Window {
     pub(crate) fn divide(&mut self, speed: f64) {
         self.nodes.push_back(Node {
             cruises: true,
-            ..Node::new(TurnShape::through(speed), 1.0)
+            ..Node::new(BlendShape::through(speed), 1.0)
         });
     }
 
@@ -167,7 +167,7 @@ impl Window {
     }
 
     /// The motion of the next corner, scaled; `None` until enough of the path is known.
-    pub(crate) fn pull(&mut self) -> Option<TurnShape> {
+    pub(crate) fn pull(&mut self) -> Option<BlendShape> {
         let known = self.known();
         if known == 0 {
             return None;
@@ -177,7 +177,7 @@ impl Window {
         }
         let fresh = known - self.passed;
         // A pass costs as much as it looks at, so it waits until a share of that is new.
-        let patience = (self.passed / PASSES).clamp(FEWEST_FRESH, self.batch.max(FEWEST_FRESH));
+        let patience = (self.passed / PASSES).clamp(MIN_FRESH, self.batch.max(MIN_FRESH));
         let divided = self.ends_cruising();
         if fresh > 0 && (self.finished || divided || self.due > 0 || fresh >= patience) {
             self.backward();
@@ -210,7 +210,7 @@ impl Window {
         let known = self.known();
         let mut next = Node {
             cap: 0.0,
-            ..Node::new(TurnShape::STOP, 0.0)
+            ..Node::new(BlendShape::STOP, 0.0)
         };
         for index in (1..=known).rev() {
             let node = self.nodes[index];
@@ -233,7 +233,7 @@ impl Window {
     }
 
     /// Fixes the scale of node 1 and makes it the first.
-    fn commit(&mut self) -> TurnShape {
+    fn commit(&mut self) -> BlendShape {
         let from = self.nodes[0];
         let next = self.nodes[1];
         let scale = furthest(&from, &next, &self.links[0]);

@@ -6,8 +6,8 @@
 mod ways;
 
 use crate::method::Settings;
-use crate::segment::Leg;
-use crate::segment_merger::{Merger, Vertex};
+use crate::segment::Segment;
+use crate::segment_merger::{SegmentMerger, Vertex};
 use crate::stretch::{FINE_SHARE, Stretches, stops_within};
 use std::collections::VecDeque;
 use toolglide_kinematics::numeric::TIME_SLACK;
@@ -15,18 +15,18 @@ use toolglide_kinematics::{Pause, Piece, Tolerance, Vector};
 use ways::Ways;
 
 /// Most vertices, and most legs, of a section that is held back; no more vertices than the window has corners.
-const MOST_HELD: usize = 1024;
+const MAX_HELD: usize = 1024;
 
 /// Most stops that the legs of a section that is held back have room for: some 2 s of motion on a mill. Counted in stops,
 /// so that a path of other lengths and times is planned in the same way.
-const MOST_STOPS: f64 = 80.0;
+const MAX_STOPS: f64 = 80.0;
 
 /// Most pieces of a section that is held back.
-const MOST_PIECES: usize = 8192;
+const MAX_PIECES: usize = 8192;
 
 /// Most legs on which the motion can reach its feedrate and stop again, of a section that is held back though these
 /// take more than such a share of its stops: what is before them hardly depends on what follows.
-const MOST_LONG: usize = 1;
+const MAX_LONG: usize = 1;
 const LONG_SHARE: f64 = 0.5;
 
 /// A leg is long if it is longer than so many stops.
@@ -39,8 +39,8 @@ pub(crate) struct Sections<const N: usize> {
     state: State,
     /// The section that is held back: where it begins, its legs, and what corners are made of.
     start: Vector<N>,
-    merger: Merger<N>,
-    legs: Vec<Leg<N>>,
+    merger: SegmentMerger<N>,
+    legs: Vec<Segment<N>>,
     vertices: Vec<Vertex<N>>,
     within_arc: bool,
     long: usize,
@@ -71,16 +71,16 @@ impl<const N: usize> Sections<N> {
             stretches: Stretches::new(start, settings),
             state: State::Rested,
             start,
-            merger: Merger::new(start, settings.limits, FINE_SHARE),
-            legs: Vec::with_capacity(MOST_HELD + 2),
-            vertices: Vec::with_capacity(MOST_HELD + 2),
+            merger: SegmentMerger::new(start, settings.limits, FINE_SHARE),
+            legs: Vec::with_capacity(MAX_HELD + 2),
+            vertices: Vec::with_capacity(MAX_HELD + 2),
             within_arc: false,
             long: 0,
             long_stops: 0.0,
             stops: 0.0,
-            window: settings.window.min(MOST_HELD),
+            window: settings.window.min(MAX_HELD),
             ways: Ways::new(start, settings),
-            held: VecDeque::with_capacity(2 * MOST_PIECES),
+            held: VecDeque::with_capacity(2 * MAX_PIECES),
             ready: 0,
         }
     }
@@ -112,7 +112,7 @@ impl<const N: usize> Sections<N> {
         self.stretches.begin_arc(
             tolerance,
             vertices.inspect(|vertex| {
-                if held && own.len() <= MOST_HELD {
+                if held && own.len() <= MAX_HELD {
                     own.push(*vertex);
                 }
             }),
@@ -192,7 +192,7 @@ impl<const N: usize> Sections<N> {
         }
     }
 
-    fn take(&mut self, leg: Leg<N>) {
+    fn take(&mut self, leg: Segment<N>) {
         let stops = stops_within(&leg);
         self.stops += stops;
         if stops > LONG {
@@ -204,17 +204,17 @@ impl<const N: usize> Sections<N> {
 
     /// Holds back what the stretches have ready, unless the section has grown long.
     fn hold(&mut self) {
-        let most = self.ready + MOST_PIECES;
+        let most = self.ready + MAX_PIECES;
         while self.held.len() < most
             && let Some(piece) = self.stretches.pull()
         {
             self.held.push_back(piece);
         }
-        let long = self.legs.len() >= MOST_HELD
+        let long = self.legs.len() >= MAX_HELD
             || self.vertices.len() >= self.window
-            || self.stops > MOST_STOPS
+            || self.stops > MAX_STOPS
             || self.held.len() >= most
-            || (self.long > MOST_LONG && self.long_stops > LONG_SHARE * self.stops);
+            || (self.long > MAX_LONG && self.long_stops > LONG_SHARE * self.stops);
         if long {
             self.ready = self.held.len();
             self.state = State::Streaming;

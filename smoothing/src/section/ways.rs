@@ -6,8 +6,8 @@
 
 use crate::lookahead::corners::Corners;
 use crate::method::{Method, Settings};
-use crate::segment::Leg;
-use crate::segment_merger::{Merger, Vertex, vertex_of};
+use crate::segment::Segment;
+use crate::segment_merger::{SegmentMerger, Vertex, vertex_of};
 use crate::short_segments::Effort;
 use crate::stretch::Stretches;
 use toolglide_kinematics::{Piece, Vector};
@@ -24,21 +24,21 @@ const KINDS: [(Method, usize); 3] = [
 const COARSE_SHARE: f64 = 0.3;
 
 /// Pieces of superposed motion that may be judged for a section at the most, and how many more for each vertex.
-const MOST_EFFORT: usize = 12_000;
+const MAX_EFFORT: usize = 12_000;
 const EFFORT: usize = 16;
 
 /// Share of the tolerance within which corners are passed in their turn.
 const ORDER_SHARE: f64 = 0.999;
 
 /// Fewest legs worth superposing.
-const FEWEST_LEGS: usize = 2;
+const MIN_LEGS: usize = 2;
 
 /// What other ways are planned with.
 #[derive(Clone, Debug)]
 pub(super) struct Ways<const N: usize> {
     kinds: [Corners<N>; KINDS.len()],
-    merger: Merger<N>,
-    coarse: Vec<Leg<N>>,
+    merger: SegmentMerger<N>,
+    coarse: Vec<Segment<N>>,
     effort: usize,
     /// The kind that was found the fastest; `None` for superposed motion.
     fastest: Option<usize>,
@@ -49,9 +49,9 @@ impl<const N: usize> Ways<N> {
         Self {
             kinds: KINDS
                 .map(|(method, most)| Corners::new(start, &settings.with_method(method), most + 2)),
-            merger: Merger::new(start, settings.limits, COARSE_SHARE),
-            coarse: Vec::with_capacity(super::MOST_HELD + 2),
-            effort: MOST_EFFORT,
+            merger: SegmentMerger::new(start, settings.limits, COARSE_SHARE),
+            coarse: Vec::with_capacity(super::MAX_HELD + 2),
+            effort: MAX_EFFORT,
             fastest: None,
         }
     }
@@ -62,12 +62,12 @@ impl<const N: usize> Ways<N> {
         &mut self,
         stretches: &mut Stretches<N>,
         start: Vector<N>,
-        legs: &[Leg<N>],
+        legs: &[Segment<N>],
         vertices: &[Vertex<N>],
         most: f64,
     ) -> bool {
-        self.effort = MOST_EFFORT.min(self.effort + EFFORT * vertices.len());
-        if legs.len() < FEWEST_LEGS {
+        self.effort = MAX_EFFORT.min(self.effort + EFFORT * vertices.len());
+        if legs.len() < MIN_LEGS {
             return false;
         }
         let mut least = most;
@@ -124,7 +124,7 @@ impl<const N: usize> Ways<N> {
     }
 
     /// Merges legs with more of the tolerance; none where that merges nothing.
-    fn coarsen(&mut self, start: Vector<N>, legs: &[Leg<N>]) {
+    fn coarsen(&mut self, start: Vector<N>, legs: &[Segment<N>]) {
         let Self { merger, coarse, .. } = self;
         coarse.clear();
         merger.restart(start);

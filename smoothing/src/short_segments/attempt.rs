@@ -3,11 +3,11 @@
 //! Source: ours. A plan counts only when every piece of it has been found inside all limits and the tolerance.
 //! Not here: what a plan is needed for.
 
-use crate::short_segments::feed_profile::{Filter, Handover};
-use crate::short_segments::{MOST_STEPS, Onward, Superposer};
+use crate::short_segments::feed_profile::{Filter, SwitchState};
+use crate::short_segments::{Continuation, MAX_STEPS, ShortSegmentSmoother};
 
 /// Fewest time steps of one stretch.
-const FEWEST_STEPS: f64 = 4.0;
+const MIN_STEPS: f64 = 4.0;
 
 /// Share of the feedrate by which a change of speed overshoots it, for a time step as long as the ramp.
 const OVERSHOOT: f64 = 0.015;
@@ -15,17 +15,17 @@ const OVERSHOOT: f64 = 0.015;
 /// Rounds of slowing down where a limit or the tolerance is exceeded.
 const ROUNDS: usize = 16;
 
-impl<const N: usize> Superposer<N> {
+impl<const N: usize> ShortSegmentSmoother<N> {
     pub(super) fn attempt(
         &mut self,
         filter: &Filter,
         ramp: f64,
         most: f64,
-        onward: Option<&Onward<N>>,
+        onward: Option<&Continuation<N>>,
     ) -> bool {
         // A change of speed overshoots by about this much when the control points are sharpened.
         let share = 1.0 - OVERSHOOT * (filter.step / ramp).powi(2);
-        let start = onward.map_or(Handover::AT_REST, |onward| onward.start);
+        let start = onward.map_or(SwitchState::AT_REST, |onward| onward.start);
         if !self
             .pace
             .survey(&self.curve, &self.limits, filter, &start, share)
@@ -68,7 +68,7 @@ impl<const N: usize> Superposer<N> {
         clippy::cast_sign_loss,
         reason = "the count is bounded before it is cast"
     )]
-    fn propose(&mut self, filter: &Filter, most: f64, onward: Option<&Onward<N>>) -> bool {
+    fn propose(&mut self, filter: &Filter, most: f64, onward: Option<&Continuation<N>>) -> bool {
         let Self {
             curve,
             pace,
@@ -78,7 +78,7 @@ impl<const N: usize> Superposer<N> {
         let Some(duration) = pace.arrange(filter.step) else {
             return false;
         };
-        if duration >= most || duration > filter.step * MOST_STEPS as f64 {
+        if duration >= most || duration > filter.step * MAX_STEPS as f64 {
             return false;
         }
         spline.clear(filter);
@@ -94,7 +94,7 @@ impl<const N: usize> Superposer<N> {
             spline.push(curve.control_at(next, onward.controls[2].leg), next);
         } else {
             // Whole steps from rest to rest.
-            let steps = (duration / filter.step).round().max(FEWEST_STEPS);
+            let steps = (duration / filter.step).round().max(MIN_STEPS);
             spline.step = duration / steps;
             spline.origin = -spline.step;
             spline.push(begin, 0.0);
@@ -105,7 +105,7 @@ impl<const N: usize> Superposer<N> {
             let control = curve.control_at(distance, near);
             near = control.leg;
             spline.push(control, distance);
-            spline.controls.len() <= MOST_STEPS
+            spline.controls.len() <= MAX_STEPS
         });
         let end = curve.end();
         let length = curve.length();

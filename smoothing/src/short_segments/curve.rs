@@ -2,8 +2,8 @@
 //!
 //! Source: ours. Not here: time.
 
-use crate::segment::Leg;
-use toolglide_kinematics::{Serves, Vector};
+use crate::segment::Segment;
+use toolglide_kinematics::{MoveRange, Vector};
 
 /// A control point and its place on the curve.
 #[derive(Clone, Copy, Debug)]
@@ -11,13 +11,13 @@ pub(super) struct Control<const N: usize> {
     pub(super) point: Vector<N>,
     pub(super) distance: f64,
     pub(super) leg: usize,
-    pub(super) serves: Serves,
+    pub(super) serves: MoveRange,
 }
 
 /// Straight legs end to end, found by the distance along them.
 #[derive(Clone, Debug)]
 pub(super) struct Curve<const N: usize> {
-    legs: Vec<Leg<N>>,
+    legs: Vec<Segment<N>>,
     /// Distance at which each leg begins, and the whole length at the end.
     marks: Vec<f64>,
 }
@@ -30,7 +30,7 @@ impl<const N: usize> Curve<N> {
         }
     }
 
-    pub(super) fn set(&mut self, legs: &[Leg<N>]) {
+    pub(super) fn set(&mut self, legs: &[Segment<N>]) {
         self.legs.clear();
         self.legs.extend_from_slice(legs);
         self.marks.clear();
@@ -42,7 +42,7 @@ impl<const N: usize> Curve<N> {
         self.marks.push(mark);
     }
 
-    pub(super) fn legs(&self) -> &[Leg<N>] {
+    pub(super) fn legs(&self) -> &[Segment<N>] {
         &self.legs
     }
 

@@ -16,16 +16,16 @@ mod spline;
 mod velocity_limit;
 mod whole;
 
-use crate::segment::Leg;
+use crate::segment::Segment;
 use curve::{Control, Curve};
-use feed_profile::{Filter, Handover, Pace};
+use feed_profile::{FeedProfile, Filter, SwitchState};
 use pulses::Commands;
 use spline::Spline;
 use toolglide_kinematics::{Limits, Piece, Vector};
 pub(crate) use whole::Effort;
 
 /// Most time steps of one stretch.
-const MOST_STEPS: usize = 16_384;
+const MAX_STEPS: usize = 16_384;
 
 /// Filters tried in this order: the time step, as a share of the time in which the jerk changes the
 /// speed by the feedrate, and the sharpening.
@@ -36,24 +36,24 @@ const GOOD_ENOUGH: f64 = 1.02;
 
 /// How a motion goes on from a place where it neither gains nor loses speed.
 #[derive(Clone, Copy, Debug)]
-struct Onward<const N: usize> {
+struct Continuation<const N: usize> {
     filter: Filter,
     /// The last control points that are settled.
     controls: [Control<N>; 3],
     /// Progress at the last of them and one step later.
     progress: [f64; 2],
     /// From where the progress may be another; its time is counted from there.
-    start: Handover,
+    start: SwitchState,
     /// Time from there to the next step.
     first: f64,
 }
 
 /// Plans stretches of superposed corners.
 #[derive(Clone, Debug)]
-pub(crate) struct Superposer<const N: usize> {
+pub(crate) struct ShortSegmentSmoother<const N: usize> {
     limits: Limits<N>,
     curve: Curve<N>,
-    pace: Pace,
+    pace: FeedProfile,
     spline: Spline<N>,
     /// The fastest plan of the stretch that was planned last.
     best: Spline<N>,
@@ -62,22 +62,22 @@ pub(crate) struct Superposer<const N: usize> {
     run: Spline<N>,
     next: usize,
     until: usize,
-    onward: Option<Onward<N>>,
+    onward: Option<Continuation<N>>,
     commands: Commands<N>,
     /// Pieces of trials that may still be judged.
     effort: usize,
 }
 
-impl<const N: usize> Superposer<N> {
+impl<const N: usize> ShortSegmentSmoother<N> {
     /// A planner of stretches of so many legs at the most.
     pub(crate) fn new(limits: Limits<N>, legs: usize) -> Self {
         Self {
             limits,
             curve: Curve::with_capacity(legs + 1),
-            pace: Pace::new(),
-            spline: Spline::with_capacity(MOST_STEPS + 64),
-            best: Spline::with_capacity(MOST_STEPS + 64),
-            run: Spline::with_capacity(MOST_STEPS + 64),
+            pace: FeedProfile::new(),
+            spline: Spline::with_capacity(MAX_STEPS + 64),
+            best: Spline::with_capacity(MAX_STEPS + 64),
+            run: Spline::with_capacity(MAX_STEPS + 64),
             next: 0,
             until: 0,
             onward: None,
@@ -90,7 +90,7 @@ impl<const N: usize> Superposer<N> {
     /// cannot be done.
     ///
     /// `least` is a time that no motion can undercut.
-    pub(crate) fn plan(&mut self, legs: &[Leg<N>], least: f64, most: f64) -> Option<f64> {
+    pub(crate) fn plan(&mut self, legs: &[Segment<N>], least: f64, most: f64) -> Option<f64> {
         self.curve.set(legs);
         let ramp = self.ramp(legs);
         let mut shortest = None;
@@ -110,7 +110,7 @@ impl<const N: usize> Superposer<N> {
 
     /// Plans the legs from where the motion that is travelled may still become another to rest, in less
     /// than `most` seconds; the duration, or `None` when that cannot be done.
-    pub(crate) fn plan_onward(&mut self, legs: &[Leg<N>], most: f64) -> Option<f64> {
+    pub(crate) fn plan_onward(&mut self, legs: &[Segment<N>], most: f64) -> Option<f64> {
         let onward = self.onward?;
         self.curve.set(legs);
         let ramp = self.ramp(legs);
@@ -125,7 +125,7 @@ impl<const N: usize> Superposer<N> {
     /// speed, in less than `most` seconds; the duration, or `None` when that cannot be done.
     pub(crate) fn plan_entering(
         &mut self,
-        legs: &[Leg<N>],
+        legs: &[Segment<N>],
         distance: f64,
         speed: f64,
         most: f64,
@@ -137,12 +137,12 @@ impl<const N: usize> Superposer<N> {
             return None;
         }
         let ramp = self.ramp(legs);
-        let entering = Onward {
+        let entering = Continuation {
             filter: Filter::sharp(step, self.best.sharpening),
             controls: [-1.0, 0.0, 1.0]
                 .map(|ticks| self.curve.control_at(distance + ticks * advance, 0)),
             progress: [1.0, 2.0].map(|ticks| distance + ticks * advance),
-            start: Handover {
+            start: SwitchState {
                 time: 0.0,
                 distance: distance + 2.0 * advance,
                 speed,
@@ -157,7 +157,7 @@ impl<const N: usize> Superposer<N> {
     }
 
     /// Time in which the jerk changes the speed by what the legs allow.
-    fn ramp(&self, legs: &[Leg<N>]) -> f64 {
+    fn ramp(&self, legs: &[Segment<N>]) -> f64 {
         let length = self.curve.length();
         let (mut feedrate, mut jerk) = (0.0_f64, f64::INFINITY);
         for leg in legs {

@@ -6,12 +6,12 @@
 //! as soon as it is commanded. With the pause of a full stop it always is, so that the search ends. Not here: which
 //! speed pulses are designed for.
 
-use crate::segment::Leg;
+use crate::segment::Segment;
 use crate::short_segments::curve::{Control, Curve};
 use crate::short_segments::feed_profile::Filter;
 use crate::short_segments::spline::mean;
-use crate::short_segments::{MOST_STEPS, Superposer};
-use toolglide_kinematics::{Serves, Tangential, Vector};
+use crate::short_segments::{MAX_STEPS, ShortSegmentSmoother};
+use toolglide_kinematics::{MoveRange, PathLimits, Vector};
 
 /// Steps in the longer mean.
 const TAPS: u8 = 8;
@@ -59,8 +59,8 @@ struct Pulse {
 impl<const N: usize> Commands<N> {
     pub(super) fn new() -> Self {
         Self {
-            raw: Vec::with_capacity(MOST_STEPS + 8),
-            mid: Vec::with_capacity(MOST_STEPS + 8),
+            raw: Vec::with_capacity(MAX_STEPS + 8),
+            mid: Vec::with_capacity(MAX_STEPS + 8),
             filter: Filter::sharp(0.0, 0.0),
         }
     }
@@ -71,7 +71,7 @@ impl<const N: usize> Commands<N> {
         clippy::cast_sign_loss,
         reason = "the count is bounded before it is cast"
     )]
-    fn begin(&mut self, start: Control<N>, weakest: &Tangential, speed: f64, changes: f64) {
+    fn begin(&mut self, start: Control<N>, weakest: &PathLimits, speed: f64, changes: f64) {
         let product = changes * speed / weakest.jerk;
         let long = (speed / weakest.acceleration).max(product.sqrt());
         let step = long / f64::from(TAPS);
@@ -87,7 +87,7 @@ impl<const N: usize> Commands<N> {
 
     /// Largest speed of which a step is legal along a leg.
     #[allow(clippy::cast_precision_loss, reason = "counts are small")]
-    fn largest_step(&self, leg: &Leg<N>, changes: f64) -> f64 {
+    fn largest_step(&self, leg: &Segment<N>, changes: f64) -> f64 {
         let Filter { step, taps, .. } = self.filter;
         let [long, short] = taps.map(|taps| taps as f64 * step);
         let limits = &leg.limits;
@@ -116,7 +116,7 @@ impl<const N: usize> Commands<N> {
             raw.extend(std::iter::repeat_n(start, pulse.pause));
         }
         while time < course.duration {
-            if raw.len() >= MOST_STEPS {
+            if raw.len() >= MAX_STEPS {
                 return None;
             }
             raw.push(curve.control_at(begin + course.along(time), index));
@@ -133,7 +133,7 @@ impl<const N: usize> Commands<N> {
             serves: leg.serves,
         };
         raw.extend(std::iter::repeat_n(rest, self.filter.settling() + REST));
-        (raw.len() < MOST_STEPS).then_some(next)
+        (raw.len() < MAX_STEPS).then_some(next)
     }
 }
 
@@ -192,15 +192,21 @@ impl Course {
     }
 }
 
-impl<const N: usize> Superposer<N> {
+impl<const N: usize> ShortSegmentSmoother<N> {
     /// Plans the legs of the curve as pulses that are designed for a speed, in less than `most` seconds; whether
     /// that can be done.
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
-    pub(super) fn pulse(&mut self, legs: &[Leg<N>], speed: f64, changes: f64, most: f64) -> bool {
+    pub(super) fn pulse(
+        &mut self,
+        legs: &[Segment<N>],
+        speed: f64,
+        changes: f64,
+        most: f64,
+    ) -> bool {
         let weakest = legs
             .iter()
             .map(|leg| leg.limits)
-            .reduce(|one, other| Tangential {
+            .reduce(|one, other| PathLimits {
                 velocity: one.velocity.min(other.velocity),
                 acceleration: one.acceleration.min(other.acceleration),
                 jerk: one.jerk.min(other.jerk),
@@ -247,7 +253,7 @@ impl<const N: usize> Superposer<N> {
     #[allow(clippy::cast_precision_loss, reason = "counts are small")]
     fn overlap(
         &mut self,
-        leg: &Leg<N>,
+        leg: &Segment<N>,
         index: usize,
         largest: f64,
         smooth: bool,
@@ -336,7 +342,7 @@ impl<const N: usize> Superposer<N> {
                 point,
                 distance,
                 leg: curve.leg_at(distance, raw[index].leg),
-                serves: Serves {
+                serves: MoveRange {
                     first: raw[oldest].serves.first,
                     last: raw[index].serves.last,
                 },

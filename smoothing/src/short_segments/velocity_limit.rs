@@ -7,7 +7,7 @@
 
 use crate::short_segments::curve::Curve;
 use crate::short_segments::feed_profile::{Filter, Place};
-use toolglide_kinematics::{Limits, Tangential, Vector, largest_multiple};
+use toolglide_kinematics::{Limits, PathLimits, Vector, largest_multiple};
 
 /// Share of the acceleration that curvature may use.
 const CURVATURE_ACCELERATION: f64 = 0.85;
@@ -20,7 +20,7 @@ const LADDER: f64 = 0.95;
 /// Lowest speed tried, as a share of the feedrate.
 const LOWEST: f64 = 0.01;
 /// Share of the limits that changes of speed may use at the least.
-const LEAST_REST: f64 = 0.35;
+const MIN_REST: f64 = 0.35;
 
 /// Gives what each place of the curve from a distance on allows at a share of the feedrate; `false`
 /// when `take` has had enough.
@@ -57,7 +57,7 @@ pub(super) fn survey<const N: usize>(
             }
             let limits = if straight {
                 last_speed = feedrate;
-                Tangential {
+                PathLimits {
                     velocity: feedrate,
                     ..leg.limits
                 }
@@ -86,7 +86,7 @@ struct Trial<'a, const N: usize> {
 
 impl<const N: usize> Trial<'_, N> {
     /// The largest speed of the ladder that the place allows, and what it leaves to changes of speed.
-    fn limits_at(&self, distance: f64, feedrate: f64, guess: f64) -> Tangential {
+    fn limits_at(&self, distance: f64, feedrate: f64, guess: f64) -> PathLimits {
         let try_at = |speed: f64| {
             let [second, third] = self.differences(distance, speed);
             self.fits(distance, &second, &third)
@@ -145,14 +145,14 @@ impl<const N: usize> Trial<'_, N> {
     }
 
     /// What curvature leaves of the limits along the path.
-    fn rest(&self, distance: f64, speed: f64, second: &Vector<N>, third: &Vector<N>) -> Tangential {
+    fn rest(&self, distance: f64, speed: f64, second: &Vector<N>, third: &Vector<N>) -> PathLimits {
         let step = self.filter.reach();
         let leg = &self.curve.legs()[self.curve.leg_at(distance, self.near)];
-        let mut rest = Tangential {
+        let mut rest = PathLimits {
             velocity: speed,
             ..leg.limits
         };
-        let used = |difference: f64, bound: f64| (bound - difference.abs()).max(LEAST_REST * bound);
+        let used = |difference: f64, bound: f64| (bound - difference.abs()).max(MIN_REST * bound);
         for axis in 0..N {
             let share = leg.direction[axis].abs();
             if share > 0.0 {

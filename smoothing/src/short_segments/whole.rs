@@ -4,8 +4,8 @@
 //! and pulses pause where corners are sharp: which of them is the fastest depends on the path, so each is tried
 //! while there is work left. Not here: when that is worth it.
 
-use crate::segment::Leg;
-use crate::short_segments::Superposer;
+use crate::segment::Segment;
+use crate::short_segments::ShortSegmentSmoother;
 use crate::short_segments::feed_profile::Filter;
 use toolglide_kinematics::Vector;
 
@@ -46,13 +46,13 @@ pub(crate) struct Effort {
     pub(crate) pulses: usize,
 }
 
-impl<const N: usize> Superposer<N> {
+impl<const N: usize> ShortSegmentSmoother<N> {
     /// Plans the legs from rest to rest in less than `most` seconds; the duration, or `None` when no way of doing that was found, and the effort that is left.
     ///
     /// `least` is a time that no motion can undercut.
     pub(crate) fn plan_whole(
         &mut self,
-        legs: &[Leg<N>],
+        legs: &[Segment<N>],
         least: f64,
         most: f64,
         effort: Effort,

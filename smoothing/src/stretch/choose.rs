@@ -7,11 +7,11 @@
 use super::Stretches;
 use super::travel::Entry;
 use crate::lookahead::corners::Corners;
-use crate::segment::Leg;
+use crate::segment::Segment;
 use crate::segment_merger::vertex_of;
 
 /// Fewest legs of a stretch worth trying with superposed corners.
-pub(super) const FEWEST_LEGS: usize = 4;
+pub(super) const MIN_LEGS: usize = 4;
 
 /// How much faster than the plan by corners a stretch at the feedrate would have to be.
 const WORTH_TRYING: f64 = 0.996;
@@ -25,7 +25,7 @@ const ANY_DIRECTION: f64 = 0.55;
 
 /// No way from rest to rest takes less along these legs within their tolerance: inside of all turns the way is
 /// shorter by the tolerance for each radian, and speed is gained at the most as if all axes helped.
-fn least_alone<const N: usize>(legs: &[Leg<N>]) -> f64 {
+fn least_alone<const N: usize>(legs: &[Segment<N>]) -> f64 {
     let ideal = Ideal::of(legs);
     let length: f64 = legs.iter().map(|leg| leg.length).sum();
     let saved: f64 = legs
@@ -69,7 +69,7 @@ pub(super) struct Ideal {
 }
 
 impl Ideal {
-    pub(super) fn of<const N: usize>(legs: &[Leg<N>]) -> Self {
+    pub(super) fn of<const N: usize>(legs: &[Segment<N>]) -> Self {
         let at_feedrate = legs
             .iter()
             .map(|leg| leg.length / leg.limits.velocity)
@@ -92,10 +92,10 @@ impl Ideal {
 
 impl<const N: usize> Stretches<N> {
     /// How a stretch is travelled fastest. With superposed corners it is planned when that is chosen.
-    pub(super) fn decide(&mut self, legs: &[Leg<N>]) -> Choice {
+    pub(super) fn decide(&mut self, legs: &[Segment<N>]) -> Choice {
         // Where corners merge only lines, stopping at each is among their ways.
         let certain = !self.watched && !self.has_arc(legs);
-        if certain && legs.len() < FEWEST_LEGS {
+        if certain && legs.len() < MIN_LEGS {
             return Choice::Corners(Material::Vertices);
         }
         let (choice, least) = self.choose(legs);
@@ -134,7 +134,7 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// The same to rest behind its first leg, in the middle of which the motion cruises, and then through the others.
-    fn resting_behind(&mut self, legs: &[Leg<N>]) -> f64 {
+    fn resting_behind(&mut self, legs: &[Segment<N>]) -> f64 {
         let (lead, others) = legs.split_at(1.min(legs.len()));
         self.trial.follow(&self.corners);
         let resting = self.trial.time_to_rest(self.vertices.of(lead));
@@ -143,11 +143,11 @@ impl<const N: usize> Stretches<N> {
 
     /// How a stretch is travelled fastest from rest to rest, and its duration. With superposed corners it
     /// is planned when that is chosen.
-    pub(super) fn choose(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
+    pub(super) fn choose(&mut self, legs: &[Segment<N>]) -> (Choice, f64) {
         if self.has_arc(legs) {
             let ideal = Ideal::of(legs);
             let most = NEAR * (ideal.at_feedrate + ideal.stop);
-            if legs.len() >= FEWEST_LEGS
+            if legs.len() >= MIN_LEGS
                 && let Some(duration) = self.superposer.plan(legs, ideal.at_feedrate, most)
             {
                 return (Choice::Superposed(None), duration);
@@ -161,7 +161,7 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// The same without superposed corners for the whole of it.
-    pub(super) fn without_superposing(&mut self, legs: &[Leg<N>]) -> (Choice, f64) {
+    pub(super) fn without_superposing(&mut self, legs: &[Segment<N>]) -> (Choice, f64) {
         let (by_corners, material) = self.by_corners(legs);
         // Stops are among the choices at every corner, but not inside an arc, which begins and ends
         // afresh where the motion stops beside it.
@@ -186,20 +186,20 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Duration of a move, or of lines that are merged into one leg, from rest to rest.
-    fn alone(&mut self, legs: &[Leg<N>]) -> f64 {
+    fn alone(&mut self, legs: &[Segment<N>]) -> f64 {
         let (by_corners, _) = self.by_corners(legs);
         self.superpose(legs, by_corners).unwrap_or(by_corners)
     }
 
     /// Whether any of the legs belongs to an arc.
-    pub(super) fn has_arc(&self, legs: &[Leg<N>]) -> bool {
+    pub(super) fn has_arc(&self, legs: &[Segment<N>]) -> bool {
         self.vertices.of(legs).any(|vertex| vertex.bulge > 0.0)
     }
 
     /// Plans a stretch with superposed corners; its duration, when that is worth while and less than
     /// `most`.
-    fn superpose(&mut self, legs: &[Leg<N>], most: f64) -> Option<f64> {
-        if legs.len() < FEWEST_LEGS {
+    fn superpose(&mut self, legs: &[Segment<N>], most: f64) -> Option<f64> {
+        if legs.len() < MIN_LEGS {
             return None;
         }
         let ideal = Ideal::of(legs);
@@ -210,19 +210,19 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Duration of a stretch planned corner by corner from rest to rest, and of what.
-    fn by_corners(&mut self, legs: &[Leg<N>]) -> (f64, Material) {
+    fn by_corners(&mut self, legs: &[Segment<N>]) -> (f64, Material) {
         let start = legs.first().map_or(self.end, |first| first.start);
         self.quicker(legs, |trial, _| trial.restart(start))
     }
 
     /// The same after the corners under way, from when they began.
-    fn going_on(&mut self, legs: &[Leg<N>]) -> (f64, Material) {
+    fn going_on(&mut self, legs: &[Segment<N>]) -> (f64, Material) {
         self.quicker(legs, Corners::follow)
     }
 
     fn quicker(
         &mut self,
-        legs: &[Leg<N>],
+        legs: &[Segment<N>],
         prepare: impl Fn(&mut Corners<N>, &Corners<N>),
     ) -> (f64, Material) {
         let clean = self.is_clean(legs);
@@ -245,12 +245,12 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Whether the legs are the vertices.
-    fn is_clean(&self, legs: &[Leg<N>]) -> bool {
+    fn is_clean(&self, legs: &[Segment<N>]) -> bool {
         self.vertices.of(legs).len() == legs.len()
     }
 
     /// Plans the corners of a stretch after those under way.
-    pub(super) fn turn(&mut self, legs: &[Leg<N>], material: Material) {
+    pub(super) fn turn(&mut self, legs: &[Segment<N>], material: Material) {
         let Self {
             corners, vertices, ..
         } = self;

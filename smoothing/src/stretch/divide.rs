@@ -5,19 +5,19 @@
 //! stretch: so a path of long legs is handed out leg by leg. Not here: how long that is.
 
 use super::Stretches;
-use super::choose::{FEWEST_LEGS, Material};
+use super::choose::{MIN_LEGS, Material};
 use super::travel::way_in;
 use crate::lookahead::corners::room_beside;
-use crate::segment::Leg;
+use crate::segment::Segment;
 use crate::segment_merger::{STRAIGHT_SHARE, Vertex, vertex_of};
 
 impl<const N: usize> Stretches<N> {
     /// Divides the plan on a leg where it is long enough, and the few legs before it are turned corner by corner for
     /// certain; what is left of it to be planned.
-    pub(super) fn divide(&mut self, leg: Leg<N>) -> Leg<N> {
+    pub(super) fn divide(&mut self, leg: Segment<N>) -> Segment<N> {
         let certain = self.planned == 0
             && !self.watched
-            && self.legs.len() + 1 < FEWEST_LEGS
+            && self.legs.len() + 1 < MIN_LEGS
             && leg.deviation <= STRAIGHT_SHARE * leg.tolerance.length()
             && !(self.has_arc(&[leg]) || self.has_arc(&self.legs));
         if !certain {
@@ -42,7 +42,7 @@ impl<const N: usize> Stretches<N> {
         // One vertex stands for all that the leg serves.
         let end = vertex_of(&second);
         self.vertices.replace(last, Vertex { bulge: 0.0, ..end });
-        Leg {
+        Segment {
             vertices: [last, after],
             ..second
         }

@@ -12,9 +12,9 @@ mod vertices;
 use crate::lookahead::corners::Corners;
 
 use crate::method::Settings;
-use crate::segment::Leg;
-use crate::segment_merger::{MOST_MERGED, Merger, Vertex};
-use crate::short_segments::{Effort, Superposer};
+use crate::segment::Segment;
+use crate::segment_merger::{MAX_MERGED, SegmentMerger, Vertex};
+use crate::short_segments::{Effort, ShortSegmentSmoother};
 use choose::Ideal;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
@@ -28,13 +28,13 @@ pub(crate) const FINE_SHARE: f64 = 0.05;
 const SHARP: f64 = 0.216;
 
 /// Most legs of a stretch, but for those of an arc.
-const MOST_LEGS: usize = 4096;
+const MAX_LEGS: usize = 4096;
 
 /// Most chords of an arc that is not taken by itself, from rest to rest.
 pub(crate) const LONGEST_ARC: usize = 2048;
 
 /// Most vertices of the legs that have not been planned, but for those of an arc.
-const MOST_VERTICES: usize = 8192;
+const MAX_VERTICES: usize = 8192;
 
 /// A stretch is planned without waiting for more of the path when it has so many legs and is longer than
 /// so many stops.
@@ -45,14 +45,14 @@ const STOPS_AHEAD: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Stretches<const N: usize> {
     limits: Limits<N>,
-    merger: Merger<N>,
+    merger: SegmentMerger<N>,
     vertices: Vertices<N>,
     /// Within an arc, the number of the first vertex after it.
     arc: Option<u64>,
-    legs: Vec<Leg<N>>,
+    legs: Vec<Segment<N>>,
     corners: Corners<N>,
     trial: Corners<N>,
-    superposer: Superposer<N>,
+    superposer: ShortSegmentSmoother<N>,
     /// Legs, the first ones, over which the motion under way with superposed corners has been planned
     /// already: it goes on from there if it can.
     planned: usize,
@@ -73,7 +73,7 @@ pub(crate) struct Stretches<const N: usize> {
 /// What comes from the path, in order.
 #[derive(Clone, Copy, Debug)]
 enum Event<const N: usize> {
-    Leg(Leg<N>),
+    Segment(Segment<N>),
     Rest,
     Dwell(Pause<N>),
     Close,
@@ -83,20 +83,20 @@ impl<const N: usize> Stretches<N> {
     pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
             limits: settings.limits,
-            merger: Merger::new(start, settings.limits, FINE_SHARE),
-            vertices: Vertices::with_capacity(MOST_VERTICES + LONGEST_ARC + 2 * MOST_MERGED),
+            merger: SegmentMerger::new(start, settings.limits, FINE_SHARE),
+            vertices: Vertices::with_capacity(MAX_VERTICES + LONGEST_ARC + 2 * MAX_MERGED),
             arc: None,
-            legs: Vec::with_capacity(MOST_LEGS + LONGEST_ARC),
-            corners: Corners::new(start, settings, MOST_VERTICES + LONGEST_ARC),
+            legs: Vec::with_capacity(MAX_LEGS + LONGEST_ARC),
+            corners: Corners::new(start, settings, MAX_VERTICES + LONGEST_ARC),
             trial: Corners::new(start, settings, 1),
-            superposer: Superposer::new(settings.limits, MOST_LEGS + LONGEST_ARC),
+            superposer: ShortSegmentSmoother::new(settings.limits, MAX_LEGS + LONGEST_ARC),
             planned: 0,
             ahead: 0.0,
             coarse: false,
             watched: false,
             reopen: false,
             end: start,
-            events: VecDeque::with_capacity(2 * (MOST_LEGS + LONGEST_ARC) + 8),
+            events: VecDeque::with_capacity(2 * (MAX_LEGS + LONGEST_ARC) + 8),
         }
     }
 
@@ -107,10 +107,10 @@ impl<const N: usize> Stretches<N> {
             None => self.vertices.push(vertex),
         };
         if let Some(leg) = self.merger.push(Vertex { next, ..vertex }) {
-            self.take(Event::Leg(leg));
+            self.take(Event::Segment(leg));
         }
         let waiting = self.events.iter().find_map(|event| match event {
-            Event::Leg(leg) => Some(leg),
+            Event::Segment(leg) => Some(leg),
             _ => None,
         });
         let oldest = self.legs.get(self.planned).or(waiting);
@@ -170,7 +170,7 @@ impl<const N: usize> Stretches<N> {
     /// planned must have been pulled.
     pub(crate) fn superpose_whole(
         &mut self,
-        legs: &[Leg<N>],
+        legs: &[Segment<N>],
         most: f64,
         effort: Effort,
     ) -> (Option<f64>, usize) {
@@ -200,7 +200,7 @@ impl<const N: usize> Stretches<N> {
 
     fn finish_leg(&mut self) {
         if let Some(leg) = self.merger.flush() {
-            self.take(Event::Leg(leg));
+            self.take(Event::Segment(leg));
         }
     }
 
@@ -247,7 +247,7 @@ impl<const N: usize> Stretches<N> {
             && let Some(event) = self.events.pop_front()
         {
             match event {
-                Event::Leg(leg) => self.take_leg(leg),
+                Event::Segment(leg) => self.take_leg(leg),
                 Event::Rest if self.legs.is_empty() => self.come_to_rest(),
                 Event::Rest => {
                     // After whatever the stretch may put before it.
@@ -260,7 +260,7 @@ impl<const N: usize> Stretches<N> {
         }
     }
 
-    fn take_leg(&mut self, leg: Leg<N>) {
+    fn take_leg(&mut self, leg: Segment<N>) {
         if let Some(last) = self.legs.last()
             && self.legs.len() > self.planned
         {
@@ -275,7 +275,7 @@ impl<const N: usize> Stretches<N> {
                 self.coarse = true;
                 if let Some(begin) = self.begin_of_move() {
                     // A stretch that ends before the arc, and one that begins with it.
-                    self.events.push_front(Event::Leg(leg));
+                    self.events.push_front(Event::Segment(leg));
                     let mut legs = std::mem::take(&mut self.legs);
                     self.put_back(&mut legs, begin);
                     self.legs = legs;
@@ -287,7 +287,7 @@ impl<const N: usize> Stretches<N> {
                 (self.is_within_a_long_move() && self.is_full()).then_some(Cause::Full)
             };
             if let Some(cause) = cause {
-                self.events.push_front(Event::Leg(leg));
+                self.events.push_front(Event::Segment(leg));
                 self.settle(cause);
                 return;
             }
@@ -302,8 +302,8 @@ impl<const N: usize> Stretches<N> {
     fn is_full(&self) -> bool {
         let fresh = &self.legs[self.planned..];
         (fresh.len() >= LEGS_AHEAD && self.ahead > STOPS_AHEAD)
-            || self.legs.len() >= MOST_LEGS
-            || self.vertices.of(fresh).len() >= MOST_VERTICES
+            || self.legs.len() >= MAX_LEGS
+            || self.vertices.of(fresh).len() >= MAX_VERTICES
     }
 
     /// The leg with which the move of the last one begins, when there are others before it that have not
@@ -347,7 +347,7 @@ enum Cause {
 }
 
 /// Length of a leg as a share of what a stop takes.
-pub(crate) fn stops_within<const N: usize>(leg: &Leg<N>) -> f64 {
+pub(crate) fn stops_within<const N: usize>(leg: &Segment<N>) -> f64 {
     let speed = leg.limits.velocity;
     leg.length / (0.5 * speed * leg.limits.time_to_change(speed))
 }

@@ -6,11 +6,11 @@
 //! rest.
 
 use super::choose::{Choice, Material};
-use super::{Cause, Event, MOST_LEGS, SHARP, Stretches};
-use crate::segment::Leg;
-use toolglide_kinematics::Tangential;
+use super::{Cause, Event, MAX_LEGS, SHARP, Stretches};
+use crate::segment::Segment;
+use toolglide_kinematics::PathLimits;
 use toolglide_kinematics::numeric::LENGTH_SLACK;
-use toolglide_profiles::Rise;
+use toolglide_profiles::SpeedRamp;
 
 /// Share of the velocity of a leg at which superposed corners are entered on it.
 const ENTERING: f64 = 0.995;
@@ -27,14 +27,14 @@ pub(super) struct Entry {
 
 /// Speed at which superposed corners are entered on a leg, the rise from rest to it, and the distance from which
 /// that is possible.
-fn entering_on<const N: usize>(first: &Leg<N>) -> (f64, Rise, f64) {
+fn entering_on<const N: usize>(first: &Segment<N>) -> (f64, SpeedRamp, f64) {
     let speed = ENTERING * first.limits.velocity;
-    let Tangential {
+    let PathLimits {
         acceleration, jerk, ..
     } = first.limits;
     // The corner before it ends within its reach, and from whatever speed the rise is no longer.
     let least = (0.5 * acceleration * acceleration / jerk).min(speed);
-    let rise = Rise::to_peak(0.0, 0.0, speed, acceleration, jerk);
+    let rise = SpeedRamp::to_peak(0.0, 0.0, speed, acceleration, jerk);
     let distance = (0.5 * (speed + least) * (speed + least) / acceleration
         + 4.0 * first.tolerance.length() / SHARP)
         .max(rise.distance * (1.0 + LENGTH_SLACK));
@@ -42,14 +42,14 @@ fn entering_on<const N: usize>(first: &Leg<N>) -> (f64, Rise, f64) {
 }
 
 /// Length of a leg on which superposed corners are entered.
-pub(super) fn way_in<const N: usize>(first: &Leg<N>) -> f64 {
+pub(super) fn way_in<const N: usize>(first: &Segment<N>) -> f64 {
     let (speed, _, distance) = entering_on(first);
     distance + STEPS_IN * speed * (speed / first.limits.jerk).sqrt()
 }
 
 impl<const N: usize> Stretches<N> {
     /// Plans a stretch where the motion is at rest, or is turning corners.
-    pub(super) fn set_out(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+    pub(super) fn set_out(&mut self, legs: &mut Vec<Segment<N>>, cause: Cause) {
         match self.decide(legs) {
             Choice::Corners(material) => {
                 self.watched |= self.has_arc(legs);
@@ -86,7 +86,7 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// The legs are behind the motion that has been planned.
-    fn pass(&mut self, legs: &mut Vec<Leg<N>>) {
+    fn pass(&mut self, legs: &mut Vec<Segment<N>>) {
         if let Some(last) = legs.last() {
             self.end = last.end;
         }
@@ -102,20 +102,20 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Puts the legs from an index on back before everything that waits.
-    pub(super) fn put_back(&mut self, legs: &mut Vec<Leg<N>>, from: usize) {
+    pub(super) fn put_back(&mut self, legs: &mut Vec<Segment<N>>, from: usize) {
         for leg in legs.drain(from..).rev() {
-            self.events.push_front(Event::Leg(leg));
+            self.events.push_front(Event::Segment(leg));
         }
     }
 
     /// Puts all legs back, with a rest between moves.
-    fn put_back_apart(&mut self, legs: &mut Vec<Leg<N>>) {
-        let mut next: Option<Leg<N>> = None;
+    fn put_back_apart(&mut self, legs: &mut Vec<Segment<N>>) {
+        let mut next: Option<Segment<N>> = None;
         for leg in legs.drain(..).rev() {
             if next.is_some_and(|next| leg.ends_before(&next)) {
                 self.events.push_front(Event::Rest);
             }
-            self.events.push_front(Event::Leg(leg));
+            self.events.push_front(Event::Segment(leg));
             next = Some(leg);
         }
     }
@@ -123,7 +123,7 @@ impl<const N: usize> Stretches<N> {
     /// Plans a stretch that has been planned from rest so that it is entered at speed, on its first leg;
     /// how, and how long all takes from when the corners under way began, when that is possible and
     /// faster.
-    pub(super) fn plan_entering(&mut self, legs: &[Leg<N>]) -> Option<(Entry, f64)> {
+    pub(super) fn plan_entering(&mut self, legs: &[Segment<N>]) -> Option<(Entry, f64)> {
         let first = legs.first()?;
         if self.has_arc(&legs[..1]) {
             return None;
@@ -146,7 +146,7 @@ impl<const N: usize> Stretches<N> {
 
     /// Plans a stretch from where the motion under way may still go on, or else brings that to rest where
     /// it was planned to.
-    pub(super) fn go_on(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+    pub(super) fn go_on(&mut self, legs: &mut Vec<Segment<N>>, cause: Cause) {
         let fresh = &legs[self.planned..];
         let apart = match cause {
             _ if fresh.is_empty() => None,
@@ -175,7 +175,7 @@ impl<const N: usize> Stretches<N> {
                 && apart.is_none()
                 && let Some((point, speed)) = self.superposer.leave()
             {
-                let rest = Leg {
+                let rest = Segment {
                     start: point,
                     length: (last.end - point).norm(),
                     ..last
@@ -188,7 +188,7 @@ impl<const N: usize> Stretches<N> {
     }
 
     /// Travels what has been planned with superposed corners.
-    fn travel(&mut self, legs: &mut Vec<Leg<N>>, cause: Cause) {
+    fn travel(&mut self, legs: &mut Vec<Segment<N>>, cause: Cause) {
         if let Some(last) = legs.last() {
             self.end = last.end;
         }
@@ -199,7 +199,7 @@ impl<const N: usize> Stretches<N> {
             self.superposer.travel_openly()
         };
         match passed {
-            Some(passed) if legs.len() - passed <= MOST_LEGS / 2 => {
+            Some(passed) if legs.len() - passed <= MAX_LEGS / 2 => {
                 legs.drain(..passed);
                 self.planned = legs.len();
             }

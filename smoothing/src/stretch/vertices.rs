@@ -4,7 +4,7 @@
 //! best what has not been merged before. For the same reason their arcs have fewer chords. Not here:
 //! either merging.
 
-use crate::segment::Leg;
+use crate::segment::Segment;
 use crate::segment_merger::Vertex;
 use std::collections::VecDeque;
 use std::collections::vec_deque::Iter;
@@ -41,7 +41,7 @@ impl<const N: usize> Vertices<N> {
     }
 
     /// The vertices of consecutive legs.
-    pub(super) fn of(&self, legs: &[Leg<N>]) -> Copied<Iter<'_, Vertex<N>>> {
+    pub(super) fn of(&self, legs: &[Segment<N>]) -> Copied<Iter<'_, Vertex<N>>> {
         let range = match legs {
             [first, .., last] => self.place(first.vertices[0])..self.place(last.vertices[1]),
             [only] => self.place(only.vertices[0])..self.place(only.vertices[1]),

@@ -16,7 +16,7 @@ use toolglide_kinematics::Move;
 use toolglide_kinematics::Sample;
 use toolglide_kinematics::ToolpathError;
 use toolglide_kinematics::Vector;
-use toolglide_kinematics::{Piece, Serves};
+use toolglide_kinematics::{MoveRange, Piece};
 
 /// Judges a motion piece by piece while it is planned.
 ///
@@ -48,7 +48,7 @@ pub struct Judge<const N: usize> {
     time: f64,
     /// What the sum of durations has lost to rounding.
     compensation: f64,
-    claimed: Option<Serves>,
+    claimed: Option<MoveRange>,
 }
 
 impl<const N: usize> Judge<N> {
@@ -170,8 +170,8 @@ impl<const N: usize> Judge<N> {
     }
 
     /// The moves to judge a piece by, once its claim has been checked; moves behind are closed.
-    fn claim(&mut self, serves: Serves) -> (u32, u32) {
-        let Serves { first, last } = serves;
+    fn claim(&mut self, serves: MoveRange) -> (u32, u32) {
+        let MoveRange { first, last } = serves;
         let known = self.route.len();
         let before = self.claimed;
         let next = before.map_or(0, |before| before.last.saturating_add(1));
@@ -188,7 +188,7 @@ impl<const N: usize> Judge<N> {
         let first = first.clamp(earliest.min(newest), newest);
         let last = last.clamp(first.max(next.saturating_sub(1)).min(newest), newest);
         self.skip(next, first);
-        self.claimed = Some(Serves { first, last });
+        self.claimed = Some(MoveRange { first, last });
         // The corner before the first move served, and moves of no length before it, still matter.
         let mut keep = first.saturating_sub(1);
         while keep > self.route.base() && self.route.get(keep).is_some_and(|leg| leg.is_empty()) {

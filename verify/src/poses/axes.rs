@@ -16,7 +16,7 @@ const INSTANTS: usize = 17;
 
 /// Shorter stretches are interpolated beyond their ends, s: derivatives of a shorter one would be
 /// lost in the rounding of positions.
-const LEAST_HALF: f64 = 3e-3;
+const MIN_HALF: f64 = 3e-3;
 
 /// Least half-length of a stretch, s, however awkward the motion is.
 const SHORTEST_HALF: f64 = 2e-5;
@@ -76,7 +76,7 @@ impl<'m> Follower<'m> {
     ) -> Result<(), (f64, KinematicsError)> {
         let duration = piece.duration();
         if duration > 0.0 {
-            self.stretch(piece, [0.0, duration], LEAST_HALF, take)?;
+            self.stretch(piece, [0.0, duration], MIN_HALF, take)?;
         }
         self.near = match piece {
             PosePiece::Tool(piece) => self.machine.inverse(&piece.end, &self.near),
@@ -126,7 +126,7 @@ impl<'m> Follower<'m> {
             if last < (scale * axis.limits.jerk()).min(TRUNCATION_LENGTH) {
                 continue;
             }
-            if half <= LEAST_HALF && last < ROUNDING && last > FALLING * before {
+            if half <= MIN_HALF && last < ROUNDING && last > FALLING * before {
                 for coefficient in &mut series[4..] {
                     if coefficient.abs() <= ROUNDED * last.max(before) {
                         *coefficient = 0.0;

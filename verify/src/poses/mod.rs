@@ -22,9 +22,9 @@ use axes::{Derivatives, Follower};
 use route::Route;
 use swing::Swing;
 use toolglide_kinematics::AxisVector;
+use toolglide_kinematics::MoveRange;
 use toolglide_kinematics::PoseLeg;
 use toolglide_kinematics::PosePiece;
-use toolglide_kinematics::Serves;
 use toolglide_kinematics::ToolPose;
 use toolglide_kinematics::{Axis, MachineKinematics};
 
@@ -69,7 +69,7 @@ pub struct PoseJudge<'m> {
     route: Route,
     report: PoseReport,
     time: f64,
-    served: Option<Serves>,
+    served: Option<MoveRange>,
     /// State of the axes where the last piece ended.
     state: Vec<Derivatives>,
     rested: f64,
@@ -201,9 +201,9 @@ impl<'m> PoseJudge<'m> {
     }
 
     /// The legs to judge a piece by; those behind are closed.
-    fn claim(&mut self, serves: Serves) -> Option<(u32, u32)> {
-        let Serves { first, last } = serves;
-        let before = self.served.unwrap_or(Serves { first: 0, last: 0 });
+    fn claim(&mut self, serves: MoveRange) -> Option<(u32, u32)> {
+        let MoveRange { first, last } = serves;
+        let before = self.served.unwrap_or(MoveRange { first: 0, last: 0 });
         if first > last || last >= self.route.len() || first < before.first || last < before.last {
             let time = self.time;
             self.report

@@ -13,14 +13,14 @@ use toolglide_kinematics::ToolPose;
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::angle_between;
 use toolglide_kinematics::{AxisKind, MachineKinematics};
-use toolglide_kinematics::{AxisVector, MOST_AXES};
+use toolglide_kinematics::{AxisVector, MAX_AXES};
 use toolglide_kinematics::{CubicInTime, RotaryPiece, cubic_at};
 
 /// The bound is taken for the value when it is above what is attained by this share at most.
 const PRECISION: f64 = 1e-5;
 
 /// Shares of a tolerance below this are not told apart.
-const LEAST_RATIO: f64 = 1e-3;
+const MIN_RATIO: f64 = 1e-3;
 
 /// How often a stretch is halved at most.
 const HALVINGS: u32 = 30;
@@ -148,7 +148,7 @@ impl<'m> Swing<'m> {
         found: &mut Largest,
     ) {
         let middle = 0.5 * (begin + end);
-        let mut attained = found.share.max(known).max(LEAST_RATIO);
+        let mut attained = found.share.max(known).max(MIN_RATIO);
         let mut nearest = None;
         for time in [begin, middle, end] {
             let at = self.at(time);
@@ -187,7 +187,7 @@ impl<'m> Swing<'m> {
             return f64::INFINITY;
         };
         // Points of Bezier of the difference, axis by axis; how far the axes are from the middle, all together.
-        let mut points = [[0.0; MOST_AXES]; 4];
+        let mut points = [[0.0; MAX_AXES]; 4];
         let mut radius = 0.0;
         for (axis, cubic) in self.cubics.iter().enumerate() {
             if self

@@ -11,7 +11,7 @@ use toolglide_kinematics::{GreatCircle, angle_between};
 const PRECISION: f64 = 1e-5;
 
 /// Ratios to the tolerance below this are not told apart: a hundredth of a percent of it.
-const LEAST_RATIO: f64 = 1e-4;
+const MIN_RATIO: f64 = 1e-4;
 
 /// How often a stretch is halved at most.
 const HALVINGS: u32 = 40;
@@ -95,7 +95,7 @@ impl Course<'_> {
     ) {
         let length = end - begin;
         let thirds = [1.0, 2.0].map(|third| (self.point)(begin + length * third / 3.0));
-        let mut attained = found.bound.max(known).max(LEAST_RATIO);
+        let mut attained = found.bound.max(known).max(MIN_RATIO);
         for (point, at) in [
             (&first, begin),
             (&thirds[0], begin + length / 3.0),

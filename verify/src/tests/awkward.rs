@@ -8,7 +8,7 @@ use crate::path::deviation;
 use crate::path::route::Route;
 use crate::{Judge, SetPointJudge, verify, verify_set_points};
 use toolglide_kinematics::{
-    Arc, Feedrate, Limits, Move, Piece, Sample, Serves, Tolerance, Trajectory, Vector,
+    Arc, Feedrate, Limits, Move, MoveRange, Piece, Sample, Tolerance, Trajectory, Vector,
 };
 
 /// Numbers of all sizes, and what is none.
@@ -74,7 +74,7 @@ proptest! {
         for (position, velocity, acceleration, jerk, end, time, first, last) in pieces {
             let start = Sample { position, velocity, acceleration, jerk };
             let time = if time.is_finite() { time.abs() } else { 0.0 };
-            judge.observe(&Piece::new(&start, time, end, Serves { first, last }));
+            judge.observe(&Piece::new(&start, time, end, MoveRange { first, last }));
         }
         let report = judge.finish();
         prop_assert!(report.examples.iter().all(|violation| !violation.to_string().is_empty()), "text");

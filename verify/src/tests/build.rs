@@ -2,7 +2,7 @@
 
 use crate::{Report, verify_set_points};
 use toolglide_kinematics::{
-    Feedrate, Limits, Move, Path, Piece, Plan, Sample, Serves, Tolerance, Toolpath, Trajectory,
+    Feedrate, Limits, Move, MoveRange, Path, Piece, Plan, Sample, Tolerance, Toolpath, Trajectory,
     Vector,
 };
 
@@ -70,7 +70,7 @@ pub(super) fn push_phases<const N: usize>(
     plan: &mut Plan<N>,
     phases: &[(f64, Vector<N>)],
     end: Vector<N>,
-    serves: Serves,
+    serves: MoveRange,
 ) {
     let mut state = Sample::at_rest(plan.end());
     if let Some(last) = plan.pieces().last() {
@@ -97,7 +97,7 @@ pub(super) fn push_phases<const N: usize>(
 pub(super) fn stop_and_go<const N: usize>(path: &Toolpath<N>, limits: &Limits<N>) -> Plan<N> {
     let mut plan = Plan::starting_at(path.start());
     for (step, mv) in path.moves().iter().zip(0..) {
-        let serves = Serves::one(mv);
+        let serves = MoveRange::one(mv);
         let start = plan.end();
         if let Path::Dwell { duration } = step.path() {
             plan.push(Piece::new(
@@ -168,7 +168,7 @@ pub(super) fn overlapped(
         } else {
             Vector::zeros()
         };
-        let serves = Serves {
+        let serves = MoveRange {
             first: u32::from(middle > total(0)),
             last: u32::from(middle > shift),
         };

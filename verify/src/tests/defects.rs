@@ -3,7 +3,7 @@
 use super::build::{limits, line, overlapped, path, push_phases, stop_and_go};
 use crate::{Place, Report, Violation, verify};
 use toolglide_kinematics::{
-    Arc, Feedrate, Move, Piece, Plan, Sample, Serves, Tolerance, Trajectory, Vector,
+    Arc, Feedrate, Move, MoveRange, Piece, Plan, Sample, Tolerance, Trajectory, Vector,
 };
 
 fn only<const N: usize>(report: &Report<N>) -> Violation {
@@ -125,7 +125,7 @@ fn a_cut_corner_is_measured() {
     let direction = span.normalize();
     let seven = super::build::phases(span.norm(), 100.0, 2_000.0, 50_000.0);
     let seven: Vec<_> = seven.iter().map(|(t, j)| (*t, direction * *j)).collect();
-    push_phases(&mut plan, &seven, span, Serves { first: 0, last: 1 });
+    push_phases(&mut plan, &seven, span, MoveRange { first: 0, last: 1 });
     let report = verify(&plan, &path, &limits());
     assert!(
         (report.corner_error.value - 50.0_f64.sqrt()).abs() < 1e-6,
@@ -156,7 +156,7 @@ fn a_missed_stop_and_a_short_dwell_are_named() {
     let stopping = path(&[line([10.0, 0.0]).with_exact_stop(), line([20.0, 0.0])]);
     let mut plan = Plan::starting_at(through.start());
     for piece in stop_and_go(&through, &limits()).pieces() {
-        let serves = Serves {
+        let serves = MoveRange {
             first: u32::from(piece.start()[0] > 10.0),
             last: u32::from(piece.end()[0] > 10.0),
         };
@@ -232,14 +232,14 @@ fn motion_that_is_no_number_is_named() {
         &state,
         1.0,
         path.end(),
-        Serves { first: 0, last: 0 },
+        MoveRange { first: 0, last: 0 },
     ));
     state.velocity[1] = f64::INFINITY;
     plan.push(Piece::new(
         &state,
         1.0,
         path.end(),
-        Serves { first: 0, last: 7 },
+        MoveRange { first: 0, last: 7 },
     ));
     let report = verify(&plan, &path, &limits());
     assert!(

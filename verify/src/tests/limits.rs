@@ -3,7 +3,7 @@
 use super::build::{limits, line, path, stop_and_go};
 use crate::{Place, Violation, verify};
 use toolglide_kinematics::{
-    Feedrate, Limits, Move, Piece, Plan, Sample, Serves, Trajectory, Vector,
+    Feedrate, Limits, Move, MoveRange, Piece, Plan, Sample, Trajectory, Vector,
 };
 
 #[test]
@@ -48,7 +48,7 @@ fn velocity_inside_a_piece_is_seen_although_both_ends_are_legal() {
         &start,
         0.2,
         Vector::<2>::new(80.0 * 0.2 + 50.0 * 0.04 - 1_000.0 * 0.008 / 6.0, 0.0),
-        Serves { first: 0, last: 0 },
+        MoveRange { first: 0, last: 0 },
     ));
     let report = verify(&plan, &path, &limits);
     let seen = report

@@ -3,10 +3,10 @@
 use super::build::{limits, line, path, stop_and_go};
 use crate::{Judge, Violation, verify};
 use toolglide_kinematics::{
-    Arc, Feedrate, Move, Piece, Plan, Sample, Serves, Tolerance, Toolpath, Vector,
+    Arc, Feedrate, Move, MoveRange, Piece, Plan, Sample, Tolerance, Toolpath, Vector,
 };
 
-fn claiming(plan: &Plan<2>, claim: impl Fn(Serves) -> Serves) -> Plan<2> {
+fn claiming(plan: &Plan<2>, claim: impl Fn(MoveRange) -> MoveRange) -> Plan<2> {
     let mut other = Plan::starting_at(plan.start());
     for piece in plan.pieces() {
         other.push(Piece::new(
@@ -28,7 +28,7 @@ fn a_skipped_move_is_named() {
         line([20.0, 0.0]),
     ]);
     let short = path(&[line([10.0, 0.0]), line([20.0, 0.0])]);
-    let plan = claiming(&stop_and_go(&short, &limits()), |serves| Serves {
+    let plan = claiming(&stop_and_go(&short, &limits()), |serves| MoveRange {
         first: serves.first * 3,
         last: serves.last * 3,
     });
@@ -53,7 +53,7 @@ fn wide_claims_do_not_hide_a_missed_corner() {
         line([20.0, 0.0]),
     ]);
     let short = path(&[line([10.0, 0.0]), line([20.0, 0.0])]);
-    let plan = claiming(&stop_and_go(&short, &limits()), |_| Serves {
+    let plan = claiming(&stop_and_go(&short, &limits()), |_| MoveRange {
         first: 0,
         last: 3,
     });
@@ -79,7 +79,7 @@ fn corners_in_the_wrong_order_are_seen() {
     // There, back and there again, cut down to once there.
     let full = path(&[line([10.0, 0.0]), line([0.0, 0.0]), line([10.0, 0.0])]);
     let once = path(&[line([10.0, 0.0])]);
-    let plan = claiming(&stop_and_go(&once, &limits()), |_| Serves {
+    let plan = claiming(&stop_and_go(&once, &limits()), |_| MoveRange {
         first: 0,
         last: 2,
     });
@@ -109,10 +109,10 @@ fn a_circle_left_out_is_seen() {
             &Sample::at_rest(origin),
             1.0,
             origin,
-            Serves { first: 0, last: 0 },
+            MoveRange { first: 0, last: 0 },
         ));
         let straight = super::build::path(&[line([10.0, 0.0])]);
-        let rest = claiming(&stop_and_go(&straight, &limits()), |_| Serves {
+        let rest = claiming(&stop_and_go(&straight, &limits()), |_| MoveRange {
             first: 1,
             last: 1,
         });
@@ -132,19 +132,19 @@ fn claims_that_go_back_or_beyond_are_named() {
     let path = path(&[line([10.0, 0.0]), line([20.0, 0.0])]);
     let plan = stop_and_go(&path, &limits());
     for claim in [
-        |serves: Serves| Serves {
+        |serves: MoveRange| MoveRange {
             first: 1 - serves.first,
             last: 1 - serves.last,
         },
-        |serves: Serves| Serves {
+        |serves: MoveRange| MoveRange {
             first: serves.first,
             last: serves.last + 7,
         },
-        |serves: Serves| Serves {
+        |serves: MoveRange| MoveRange {
             first: serves.first + 1,
             last: serves.last,
         },
-        |_| Serves {
+        |_| MoveRange {
             first: u32::MAX,
             last: 0,
         },
@@ -170,7 +170,7 @@ fn moves_of_no_length_may_be_left_out() {
         line([20.0, 0.0]),
     ]);
     let short = path(&[line([10.0, 0.0]), line([20.0, 0.0])]);
-    let plan = claiming(&stop_and_go(&short, &limits()), |serves| Serves {
+    let plan = claiming(&stop_and_go(&short, &limits()), |serves| MoveRange {
         first: serves.first * 3,
         last: serves.last * 3,
     });

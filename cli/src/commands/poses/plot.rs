@@ -26,13 +26,13 @@ const HEIGHT: f64 = 1200.0;
 const TOPS: [f64; 4] = [128.0, 396.0, 664.0, 932.0];
 
 /// Most poses that are kept for the paths; then every second one goes.
-const MOST_POSES: usize = 1 << 12;
+const MAX_POSES: usize = 1 << 12;
 
 /// Points of an arc on the sphere.
 const ARC_POINTS: u32 = 16;
 
 /// Most arcs that are kept.
-const MOST_LEGS: usize = 1 << 14;
+const MAX_LEGS: usize = 1 << 14;
 
 /// Gathers what the picture shows.
 pub(crate) struct PosePlot<'m> {
@@ -79,7 +79,7 @@ impl<'m> PosePlot<'m> {
         for corner in &mut self.corners {
             corner.expect(leg);
         }
-        if leg.tip().is_some() && self.legs.len() < MOST_LEGS {
+        if leg.tip().is_some() && self.legs.len() < MAX_LEGS {
             self.swings.push(self.swing(leg));
             self.legs.push(leg.clone());
         }
@@ -117,7 +117,7 @@ impl<'m> PosePlot<'m> {
     pub(crate) fn tick(&mut self, tick: &PoseTick) {
         if self.ticks.is_multiple_of(self.stride) {
             self.motion.push((tick.pose.tip(), tick.pose.orientation()));
-            if self.motion.len() > MOST_POSES {
+            if self.motion.len() > MAX_POSES {
                 let mut index = 0;
                 self.motion.retain(|_| {
                     index += 1;

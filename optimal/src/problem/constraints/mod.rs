@@ -46,13 +46,13 @@ pub(crate) trait Rows<const N: usize> {
 
     /// What is kept, for another solver.
     #[cfg(test)]
-    fn kept(bound: &Self::Bound) -> Kept<N>;
+    fn kept(bound: &Self::Bound) -> Constraint<N>;
 }
 
 /// What a point keeps.
 #[cfg(test)]
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Kept<const N: usize> {
+pub(crate) enum Constraint<const N: usize> {
     Box(Bounds<N>),
     Disc(Disc<N>),
     Tube(Tube<N>),
@@ -81,8 +81,8 @@ impl<const N: usize> Rows<N> for InBox<N> {
     type Bound = Bounds<N>;
 
     #[cfg(test)]
-    fn kept(bound: &Bounds<N>) -> Kept<N> {
-        Kept::Box(*bound)
+    fn kept(bound: &Bounds<N>) -> Constraint<N> {
+        Constraint::Box(*bound)
     }
 
     fn reset(&mut self, bound: &Bounds<N>, point: &Vector<N>, excess: f64) -> f64 {
@@ -203,8 +203,8 @@ impl<const N: usize> Rows<N> for InDisc<N> {
     type Bound = Disc<N>;
 
     #[cfg(test)]
-    fn kept(bound: &Disc<N>) -> Kept<N> {
-        Kept::Disc(*bound)
+    fn kept(bound: &Disc<N>) -> Constraint<N> {
+        Constraint::Disc(*bound)
     }
 
     fn reset(&mut self, bound: &Disc<N>, point: &Vector<N>, excess: f64) -> f64 {

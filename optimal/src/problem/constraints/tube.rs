@@ -4,9 +4,9 @@
 //! its own rows eliminate. Not here: boxes and discs.
 
 #[cfg(test)]
-use crate::problem::constraints::Kept;
+use crate::problem::constraints::Constraint;
 use crate::problem::constraints::Rows;
-use crate::solver::cone::{Centre, Cone, ConeWeight, LEAST_SLACK, Pair, Reach, Side, Sums};
+use crate::solver::cone::{Centre, Cone, ConeWeight, MIN_SLACK, Pair, Reach, Side, Sums};
 use crate::solver::riccati::{Local, Slope};
 use crate::solver::small_blocks::{outer, times};
 use toolglide_kinematics::Vector;
@@ -158,16 +158,16 @@ impl<const N: usize> Rows<N> for InTube<N> {
     type Bound = Tube<N>;
 
     #[cfg(test)]
-    fn kept(bound: &Tube<N>) -> Kept<N> {
-        Kept::Tube(*bound)
+    fn kept(bound: &Tube<N>) -> Constraint<N> {
+        Constraint::Tube(*bound)
     }
 
     fn reset(&mut self, bound: &Tube<N>, point: &Vector<N>, excess: f64) -> f64 {
         // The excess is of no use to the progress of a capsule, which starts a tolerance from either end.
         let least = if bound.capsule {
-            LEAST_SLACK.min(1.0 / bound.scaled_length())
+            MIN_SLACK.min(1.0 / bound.scaled_length())
         } else {
-            LEAST_SLACK
+            MIN_SLACK
         };
         self.progress = bound
             .along(&(point - bound.start))

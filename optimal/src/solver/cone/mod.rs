@@ -11,7 +11,7 @@ pub(crate) use side::{Centre, Reach, Side, Sums};
 use toolglide_kinematics::Vector;
 
 /// A slack starts at least this far inside, in shares of the bound.
-pub(crate) const LEAST_SLACK: f64 = 0.1;
+pub(crate) const MIN_SLACK: f64 = 0.1;
 
 /// A vector lies inside its cone by at least this share of its length: some rounding of a step that
 /// would have ended nearer.
@@ -218,7 +218,7 @@ impl<const N: usize> Cone<N> {
     /// As [`Side::reset`].
     pub(crate) fn reset(&mut self, value: &Pair<N>) -> f64 {
         self.slack = *value;
-        self.slack.head = value.head.max(value.tail.norm() + LEAST_SLACK);
+        self.slack.head = value.head.max(value.tail.norm() + MIN_SLACK);
         let by_determinant = 1.0 / self.slack.determinant();
         self.multiplier = Pair {
             head: self.slack.head * by_determinant,

@@ -2,7 +2,7 @@
 //!
 //! Source: as [`cone`](super). Not here: second-order cones.
 
-use crate::solver::cone::LEAST_SLACK;
+use crate::solver::cone::MIN_SLACK;
 
 /// What all rows of a problem add up to in one iteration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,7 +71,7 @@ impl Default for Side {
 impl Side {
     /// Starts at the value of the quantity, or inside where that is not; gives what is missing.
     pub(crate) fn reset(&mut self, value: f64) -> f64 {
-        self.reset_inside(value, LEAST_SLACK)
+        self.reset_inside(value, MIN_SLACK)
     }
 
     /// The same where inside is above `least`.

@@ -4,7 +4,7 @@ use crate::problem::Visit;
 use crate::solver::cone::{Centre, Reach, Sums};
 use crate::solver::interior::*;
 use crate::solver::riccati::{Chain, Local};
-use crate::window::{EndState, Segment, Window};
+use crate::window::{EndState, Window, WindowSegment};
 use toolglide_kinematics::Limits;
 use toolglide_kinematics::nalgebra::{DMatrix, DVector};
 
@@ -178,10 +178,10 @@ fn dense<const N: usize>(
     solution.rows(0, unknowns).into_owned()
 }
 
-fn bend() -> (Vec<Segment<2>>, Limits<2>, Vec<f64>) {
+fn bend() -> (Vec<WindowSegment<2>>, Limits<2>, Vec<f64>) {
     let points = [[0.0, 0.0], [3.0, 0.0], [3.2, 0.3], [2.0, 2.0]];
     let segments = (0..3)
-        .map(|index| Segment {
+        .map(|index| WindowSegment {
             start: Vector::from(points[index]),
             end: Vector::from(points[index + 1]),
             tolerance: 0.02,

@@ -1,7 +1,7 @@
 //! Random windows to many digits: rounding must not end a solve, whatever lies near its bounds.
 
 use crate::solver::interior::*;
-use crate::window::{EndState, Segment, Window};
+use crate::window::{EndState, Window, WindowSegment};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use toolglide_kinematics::{AxisLimits, Limits};
@@ -29,7 +29,7 @@ fn solves<const N: usize>(
             continue;
         }
         let way = way.normalize() * *length;
-        segments.push(Segment {
+        segments.push(WindowSegment {
             start: corner,
             end: corner + way,
             tolerance,

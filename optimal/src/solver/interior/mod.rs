@@ -31,7 +31,7 @@ use sweep::Tail;
 use toolglide_kinematics::Vector;
 
 /// Iterations after which a problem is given up.
-const MOST_ITERATIONS: u32 = 50;
+const MAX_ITERATIONS: u32 = 50;
 
 /// Where the predicted step is shorter, its second order says little about a step that can be gone.
 const SHORT_STEP: f64 = 0.1;
@@ -45,14 +45,14 @@ const LOST_STEP: f64 = 0.05;
 const STEP_SHARE: f64 = 0.995;
 
 /// Least share of the complementarity to aim at.
-const LEAST_CENTERING: f64 = 1e-6;
+const MIN_CENTERING: f64 = 1e-6;
 
 /// Inequalities per unit of the objective: keeps multipliers near one.
 const ROWS_PER_UNIT: f64 = 20.0;
 
 /// Iterations without progress after which a problem is given up, and what steps are progress while
 /// something is missed.
-const MOST_STALLED: u32 = 8;
+const MAX_STALLED: u32 = 8;
 const STALLED_STEP: f64 = 0.05;
 const SETTLED: f64 = 1e-6;
 
@@ -150,7 +150,7 @@ impl<const N: usize> Interior<N> {
         precision: &Precision,
         most: u32,
     ) -> Outcome {
-        let most = most.min(MOST_ITERATIONS);
+        let most = most.min(MAX_ITERATIONS);
         let degree = problem.degree();
         let unit = degree / ROWS_PER_UNIT;
         self.prepare(problem);
@@ -190,7 +190,7 @@ impl<const N: usize> Interior<N> {
             } else {
                 stalled += 1;
             }
-            if stalled > MOST_STALLED || outcome.iterations == most {
+            if stalled > MAX_STALLED || outcome.iterations == most {
                 return outcome;
             }
             outcome.iterations += 1;
@@ -342,7 +342,7 @@ fn centre(complementarity: f64, reach: &Reach, degree: f64, keep: f64) -> Centre
         + dual * reach.by_multiplier
         + primal * dual * reach.by_both;
     let left = (predicted / complementarity).clamp(0.0, 1.0);
-    let share = (left * left * left).max(LEAST_CENTERING);
+    let share = (left * left * left).max(MIN_CENTERING);
     Centre {
         complementarity: share * complementarity / degree,
         second_order: if primal.min(dual) < SHORT_STEP {

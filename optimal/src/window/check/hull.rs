@@ -3,7 +3,7 @@
 //! Source: a Bezier curve lies in the hull of its points, and halves of it by de Casteljau's method do so
 //! more closely. Not here: which bounds.
 
-use crate::window::Segment;
+use crate::window::WindowSegment;
 use crate::window::check::SLACK;
 use toolglide_kinematics::Vector;
 
@@ -13,7 +13,7 @@ pub(super) fn share_of<const N: usize>(value: &Vector<N>, limit: &Vector<N>) -> 
 }
 
 /// Distance of a point from a segment.
-pub(super) fn distance<const N: usize>(segment: &Segment<N>, point: &Vector<N>) -> f64 {
+pub(super) fn distance<const N: usize>(segment: &WindowSegment<N>, point: &Vector<N>) -> f64 {
     let span = segment.end - segment.start;
     let offset = point - segment.start;
     let along = (offset.dot(&span) / span.norm_squared()).clamp(0.0, 1.0);

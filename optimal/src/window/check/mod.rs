@@ -8,7 +8,7 @@
 
 mod hull;
 
-use crate::window::{EndState, Segment, Window, WindowMotion};
+use crate::window::{EndState, Window, WindowMotion, WindowSegment};
 use hull::{distance, hull, share_of};
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::nalgebra::{Matrix3, Vector3};
@@ -18,7 +18,7 @@ use toolglide_kinematics::numeric::LENGTH_SLACK;
 const SLACK: f64 = 1e-10;
 
 /// How often a hull is cut in halves at most.
-const MOST_HALVINGS: u32 = 5;
+const MAX_HALVINGS: u32 = 5;
 
 /// How often the end is corrected: once for the error, once for the rounding of that.
 const CORRECTIONS: usize = 3;
@@ -79,7 +79,7 @@ pub(crate) fn accept<const N: usize>(
 
 /// Durations of the intervals, in order.
 fn intervals<'a, const N: usize>(
-    segments: &'a [Segment<N>],
+    segments: &'a [WindowSegment<N>],
     durations: &'a [f64],
 ) -> impl Iterator<Item = (usize, f64)> + 'a {
     segments
@@ -226,13 +226,13 @@ fn check<const N: usize>(window: &Window<'_, N>, motion: &WindowMotion<N>) -> Re
         ];
         exceeds(
             "velocity",
-            hull(speeds, MOST_HALVINGS, &|velocity| {
+            hull(speeds, MAX_HALVINGS, &|velocity| {
                 share_of(velocity, limits.velocity())
             }),
         )?;
         exceeds(
             "feedrate",
-            hull(speeds, MOST_HALVINGS, &|velocity| {
+            hull(speeds, MAX_HALVINGS, &|velocity| {
                 velocity.norm() / segment.feedrate
             }),
         )?;
@@ -246,7 +246,7 @@ fn check<const N: usize>(window: &Window<'_, N>, motion: &WindowMotion<N>) -> Re
         let room = LENGTH_SLACK * 0.1;
         exceeds(
             "tolerance",
-            hull(places, MOST_HALVINGS, &|place| {
+            hull(places, MAX_HALVINGS, &|place| {
                 (distance(segment, place) - room) / segment.tolerance
             }),
         )?;
@@ -270,8 +270,8 @@ mod tests {
     }
 
     /// From rest to rest along x with the jerk reversed twice: four intervals.
-    fn straight(length: f64, duration: f64) -> (Vec<Segment<2>>, WindowMotion<2>) {
-        let segments = vec![Segment {
+    fn straight(length: f64, duration: f64) -> (Vec<WindowSegment<2>>, WindowMotion<2>) {
+        let segments = vec![WindowSegment {
             start: Vector::<2>::zeros(),
             end: Vector::<2>::new(length, 0.0),
             tolerance: 0.01,
@@ -288,7 +288,7 @@ mod tests {
         (segments, motion)
     }
 
-    fn judge(segments: &[Segment<2>], motion: &mut WindowMotion<2>) -> Result<(), Refused> {
+    fn judge(segments: &[WindowSegment<2>], motion: &mut WindowMotion<2>) -> Result<(), Refused> {
         let window = Window {
             start: EndState::rest(segments[0].start),
             end: EndState::rest(segments[segments.len() - 1].end),
@@ -333,7 +333,7 @@ mod tests {
 
     #[test]
     fn every_limit_is_noticed() {
-        let broken = |change: &dyn Fn(&mut Vec<Segment<2>>, &mut WindowMotion<2>)| {
+        let broken = |change: &dyn Fn(&mut Vec<WindowSegment<2>>, &mut WindowMotion<2>)| {
             let (mut segments, mut motion) = straight(2.0, 0.15);
             change(&mut segments, &mut motion);
             judge(&segments, &mut motion)

@@ -10,7 +10,7 @@ use crate::solver::budget::Budget;
 use crate::window::check::accept;
 use crate::window::horizon::{Horizon, MARGIN};
 use crate::window::straight_line;
-use crate::window::{EndState, Segment, Window, WindowMotion, WindowSolver};
+use crate::window::{EndState, Window, WindowMotion, WindowSegment, WindowSolver};
 use toolglide_kinematics::Vector;
 
 /// How much slower than a guess the first motion from rest is taken to be.
@@ -126,7 +126,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.segments.clear();
         for (index, span) in self.spans.range(..count).enumerate() {
             let next = self.spans.get(index + 1).filter(|_| index + 1 < count);
-            self.segments.push(Segment {
+            self.segments.push(WindowSegment {
                 start: span.start,
                 end: span.end,
                 tolerance: span.tube,
@@ -138,7 +138,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.shrunk_segments.clear();
         let less = |value: f64| value * (1.0 - MARGIN);
         self.shrunk_segments
-            .extend(self.segments.iter().map(|segment| Segment {
+            .extend(self.segments.iter().map(|segment| WindowSegment {
                 tolerance: less(segment.tolerance),
                 corner_tolerance: segment.corner_tolerance.map(less),
                 feedrate: less(segment.feedrate),

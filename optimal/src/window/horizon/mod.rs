@@ -17,7 +17,7 @@ use crate::solver::budget::{Budget, Credit};
 use crate::window::initial_guess::Guess;
 use crate::window::output::Event;
 use crate::window::straight_line;
-use crate::window::{EndState, Segment, WindowMotion, WindowSolver};
+use crate::window::{EndState, WindowMotion, WindowSegment, WindowSolver};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Vector, WindowTally};
 
@@ -35,16 +35,16 @@ const LONGER: f64 = 2.5;
 const REFINED: f64 = 1.3;
 
 /// Fewest spans of a window, where there are as many.
-const FEWEST_SPANS: usize = 4;
+const MIN_SPANS: usize = 4;
 
 /// Most spans of a window.
-pub(crate) const MOST_SPANS: usize = 100;
+pub(crate) const MAX_SPANS: usize = 100;
 
 /// Most intervals of a window: rounding grows with the sixth power of their number.
-const MOST_STEPS: usize = 560;
+const MAX_STEPS: usize = 560;
 
 /// Room for the intervals of a window, whose last span may reach beyond the most.
-pub(crate) const ROOM: usize = MOST_STEPS + crate::path::spans::MOST_STEPS;
+pub(crate) const ROOM: usize = MAX_STEPS + crate::path::spans::MAX_STEPS;
 
 /// Share of every limit that is kept back from the solver, which meets them to its own precision only.
 const MARGIN: f64 = 2e-4;
@@ -71,8 +71,8 @@ pub(crate) struct Horizon<S, const N: usize> {
     expected: Vec<f64>,
     free: Guess,
     guess: Guess,
-    segments: Vec<Segment<N>>,
-    shrunk_segments: Vec<Segment<N>>,
+    segments: Vec<WindowSegment<N>>,
+    shrunk_segments: Vec<WindowSegment<N>>,
     candidate: WindowMotion<N>,
     other: WindowMotion<N>,
     ratios: Vec<f64>,
@@ -89,7 +89,7 @@ pub(crate) struct Horizon<S, const N: usize> {
 
 fn motion_for<const N: usize>() -> WindowMotion<N> {
     WindowMotion {
-        durations: Vec::with_capacity(MOST_SPANS),
+        durations: Vec::with_capacity(MAX_SPANS),
         states: Vec::with_capacity(ROOM + 1),
         jerks: Vec::with_capacity(ROOM),
     }
@@ -108,20 +108,20 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 .scaled(1.0 - MARGIN)
                 .unwrap_or(settings.limits),
             weakest: weakest(&settings.limits),
-            spans: VecDeque::with_capacity(4 * MOST_SPANS),
+            spans: VecDeque::with_capacity(4 * MAX_SPANS),
             start: EndState::rest(start),
             goal: None,
             current: motion_for(),
             planned: 0,
-            expected: Vec::with_capacity(MOST_SPANS),
-            free: Guess::with_capacity(4 * MOST_SPANS),
-            guess: Guess::with_capacity(MOST_SPANS),
-            segments: Vec::with_capacity(MOST_SPANS),
-            shrunk_segments: Vec::with_capacity(MOST_SPANS),
+            expected: Vec::with_capacity(MAX_SPANS),
+            free: Guess::with_capacity(4 * MAX_SPANS),
+            guess: Guess::with_capacity(MAX_SPANS),
+            segments: Vec::with_capacity(MAX_SPANS),
+            shrunk_segments: Vec::with_capacity(MAX_SPANS),
             candidate: motion_for(),
             other: motion_for(),
-            ratios: Vec::with_capacity(MOST_SPANS),
-            events: VecDeque::with_capacity(2 * MOST_STEPS),
+            ratios: Vec::with_capacity(MAX_SPANS),
+            events: VecDeque::with_capacity(2 * MAX_STEPS),
             tally: WindowTally::default(),
             credit: Credit::new(N),
             budget: Budget::default(),
@@ -202,7 +202,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         let speed = self.start.velocity.norm();
         let open = !closing || self.passes();
         self.free.fill(self.spans.iter(), speed, open, self.weakest);
-        let (reach, enough) = self.reach(self.window, FEWEST_SPANS);
+        let (reach, enough) = self.reach(self.window, MIN_SPANS);
         let mut window = reach.max((self.planned + 1).min(known));
         if closing && self.fits_at_once(known) {
             window = known;
@@ -215,7 +215,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             return true;
         }
         // What comes after the window is known, too: the path may end there.
-        let enough = enough && self.reach(self.window + LONGER, FEWEST_SPANS).1;
+        let enough = enough && self.reach(self.window + LONGER, MIN_SPANS).1;
         if !closing && (!enough || window == self.planned) {
             return false;
         }
@@ -262,7 +262,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             } else {
                 span.steps_for(*duration, *steady)
             };
-            if index > 0 && nodes + steps > MOST_STEPS || index >= MOST_SPANS {
+            if index > 0 && nodes + steps > MAX_STEPS || index >= MAX_SPANS {
                 return (index, true);
             }
             nodes += steps;
@@ -285,7 +285,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
 
     /// Whether all that is left makes one window that is not much longer than usual.
     fn fits_at_once(&mut self, known: usize) -> bool {
-        self.reach(self.window + LONGER, FEWEST_SPANS).0 == known
+        self.reach(self.window + LONGER, MIN_SPANS).0 == known
     }
 
     /// Where a window of the first `count` spans ends: at rest, or at the goal.

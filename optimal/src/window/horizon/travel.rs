@@ -9,7 +9,7 @@ use crate::window::output::{Event, Joint};
 use crate::window::straight_line;
 use crate::window::straight_line::Line;
 use crate::window::{EndState, WindowSolver};
-use toolglide_kinematics::{Piece, Sample, Serves};
+use toolglide_kinematics::{MoveRange, Piece, Sample};
 
 impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// The last span leads to the middle of a long move, on which motion needs no planning.
@@ -42,7 +42,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.credit.earn(piece.duration());
         let start = piece.at(0.0);
         let steady = start.acceleration.norm_squared() <= 0.0 && start.jerk.norm_squared() <= 0.0;
-        let Serves { first, last } = cruise.serves;
+        let MoveRange { first, last } = cruise.serves;
         if !steady || first != last {
             self.events.push_back(Event::Piece(*piece));
             return;

@@ -9,10 +9,10 @@
 
 mod stage;
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::lookahead::window::Link;
-use stage::Column;
-pub(crate) use stage::MOST_CANDIDATES;
+pub(crate) use stage::MAX_CANDIDATES;
+use stage::Stage;
 use std::collections::VecDeque;
 
 /// Most corners between two attempts to commit, each of which looks at all that wait.
@@ -24,15 +24,15 @@ const ATTEMPTS: usize = 4;
 /// The motion chosen for a corner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice {
-    pub(crate) shape: TurnShape,
+    pub(crate) shape: BlendShape,
     /// Duration from the middle of the corner before to the middle of this one where both overlap.
     pub(crate) overlap: Option<f64>,
 }
 
 /// The cheapest way through a stream of corners, committed as soon as all ways agree.
 #[derive(Clone, Debug)]
-pub(crate) struct Lattice {
-    columns: VecDeque<Column>,
+pub(crate) struct CandidateGraph {
+    columns: VecDeque<Stage>,
     chosen: VecDeque<Choice>,
     way: Vec<u8>,
     size: usize,
@@ -44,7 +44,7 @@ pub(crate) struct Lattice {
     spent: f64,
 }
 
-impl Lattice {
+impl CandidateGraph {
     /// A lattice that holds `size` corners at the most and begins at rest.
     /// After `burst` corners that nobody has pulled it allocates.
     pub(crate) fn new(size: usize, burst: usize) -> Self {
@@ -59,14 +59,14 @@ impl Lattice {
             last: None,
             spent: 0.0,
         };
-        lattice.restart_after(TurnShape::STOP);
+        lattice.restart_after(BlendShape::STOP);
         lattice
     }
 
     /// Begins again with the exit of a motion, from which a stop can be reached.
-    pub(crate) fn restart_after(&mut self, shape: TurnShape) {
+    pub(crate) fn restart_after(&mut self, shape: BlendShape) {
         self.columns.clear();
-        let mut first = Column::empty();
+        let mut first = Stage::empty();
         first.offer(shape);
         first.safe = 1;
         first.costs[0] = 0.0;
@@ -105,11 +105,11 @@ impl Lattice {
     pub(crate) fn push(
         &mut self,
         link: &Link,
-        safe: &[TurnShape],
-        candidates: &[TurnShape],
-        overlap: impl Fn(&TurnShape, &TurnShape, f64) -> Option<f64>,
+        safe: &[BlendShape],
+        candidates: &[BlendShape],
+        overlap: impl Fn(&BlendShape, &BlendShape, f64) -> Option<f64>,
     ) {
-        let mut column = Column::empty();
+        let mut column = Stage::empty();
         for candidate in safe {
             column.offer(*candidate);
         }
@@ -154,17 +154,17 @@ impl Lattice {
         let last = *last;
         let end = self.columns.len() - 1;
         // Walk all survivors back at once until they meet.
-        let mut alive = [false; MOST_CANDIDATES];
+        let mut alive = [false; MAX_CANDIDATES];
         for (candidate, cost) in last.costs.iter().enumerate().take(last.count) {
             alive[candidate] = cost.is_finite();
         }
         if self.finished {
-            alive = [false; MOST_CANDIDATES];
+            alive = [false; MAX_CANDIDATES];
             alive[last.cheapest()] = true;
         }
         let mut index = end;
         while index > 0 && alive.iter().filter(|alive| **alive).count() > 1 {
-            let mut before = [false; MOST_CANDIDATES];
+            let mut before = [false; MAX_CANDIDATES];
             for candidate in 0..self.columns[index].count {
                 if alive[candidate] {
                     before[usize::from(self.columns[index].origins[candidate])] = true;

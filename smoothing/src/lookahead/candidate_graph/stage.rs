@@ -2,12 +2,12 @@
 //!
 //! Source: ours, as the lattice. Not here: what is done with the columns.
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::lookahead::window::Link;
-use toolglide_profiles::Connection;
+use toolglide_profiles::SCurveBoundary;
 
 /// Most candidates of one corner.
-pub(crate) const MOST_CANDIDATES: usize = 8;
+pub(crate) const MAX_CANDIDATES: usize = 8;
 
 /// Share of a move that two corners must leave free, lest they are tried overlapping.
 const OVERLAPPING: f64 = 2.0;
@@ -17,34 +17,34 @@ const STOPS_BEHIND: f64 = 4.0;
 
 /// A corner, its candidates, and the cheapest way to each.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Column {
-    pub(super) shapes: [TurnShape; MOST_CANDIDATES],
+pub(super) struct Stage {
+    pub(super) shapes: [BlendShape; MAX_CANDIDATES],
     /// Time to the middle of the corner.
-    pub(super) costs: [f64; MOST_CANDIDATES],
-    pub(super) origins: [u8; MOST_CANDIDATES],
+    pub(super) costs: [f64; MAX_CANDIDATES],
+    pub(super) origins: [u8; MAX_CANDIDATES],
     /// Duration of the overlap in which the corner is reached; zero when it is reached on the move.
-    pub(super) overlaps: [f64; MOST_CANDIDATES],
+    pub(super) overlaps: [f64; MAX_CANDIDATES],
     pub(super) count: usize,
     /// How many of the candidates, the first ones, can always be followed by another.
     pub(super) safe: usize,
 }
 
-impl Column {
+impl Stage {
     pub(super) fn empty() -> Self {
         Self {
-            shapes: [TurnShape::STOP; MOST_CANDIDATES],
-            costs: [f64::INFINITY; MOST_CANDIDATES],
-            origins: [0; MOST_CANDIDATES],
-            overlaps: [0.0; MOST_CANDIDATES],
+            shapes: [BlendShape::STOP; MAX_CANDIDATES],
+            costs: [f64::INFINITY; MAX_CANDIDATES],
+            origins: [0; MAX_CANDIDATES],
+            overlaps: [0.0; MAX_CANDIDATES],
             count: 0,
             safe: 0,
         }
     }
 
     /// Adds a candidate unless it is there already.
-    pub(super) fn offer(&mut self, shape: TurnShape) {
+    pub(super) fn offer(&mut self, shape: BlendShape) {
         let known = self.shapes[..self.count].contains(&shape);
-        if !known && self.count < MOST_CANDIDATES {
+        if !known && self.count < MAX_CANDIDATES {
             self.shapes[self.count] = shape;
             self.count += 1;
         }
@@ -92,12 +92,12 @@ impl Column {
         &mut self,
         last: &Self,
         link: &Link,
-        overlap: impl Fn(&TurnShape, &TurnShape, f64) -> Option<f64>,
+        overlap: impl Fn(&BlendShape, &BlendShape, f64) -> Option<f64>,
     ) {
         for candidate in 0..self.count {
             let to = self.shapes[candidate];
             // What looks cheapest comes first, so that little else has to be planned.
-            let mut ways = [(f64::INFINITY, 0); MOST_CANDIDATES];
+            let mut ways = [(f64::INFINITY, 0); MAX_CANDIDATES];
             for (origin, way) in ways.iter_mut().enumerate().take(last.count) {
                 let from = &last.shapes[origin];
                 *way = (last.costs[origin] + least_duration(from, &to, link), origin);
@@ -111,7 +111,7 @@ impl Column {
                 let before = last.costs[origin];
                 let halves = 0.5 * (from.duration + to.duration);
                 if length >= 0.0 && bound < best {
-                    let connection = Connection {
+                    let connection = SCurveBoundary {
                         from: [from.exit.speed, from.exit.acceleration],
                         to: [to.entry.speed, to.entry.acceleration],
                         limits: link.limits,
@@ -143,7 +143,7 @@ impl Column {
 
 /// No way from the middle of one corner to the middle of the next takes less: the motion between them
 /// without a limit of jerk.
-fn least_duration(from: &TurnShape, to: &TurnShape, link: &Link) -> f64 {
+fn least_duration(from: &BlendShape, to: &BlendShape, link: &Link) -> f64 {
     let length = (link.length - from.exit.distance - to.entry.distance).max(0.0);
     let limits = &link.limits;
     let (start, end) = (from.exit.speed, to.entry.speed);

@@ -9,20 +9,20 @@
 //! and for a fall to rest or to any corner behind it: the fastest motion cruises in its middle. Not here: what is
 //! decided there.
 
-use crate::segment::Leg;
-use toolglide_kinematics::{Limits, Tangential};
+use crate::segment::Segment;
+use toolglide_kinematics::{Limits, PathLimits};
 
 /// What corners may take more than the bound, because they lose time with other shapes.
 const MARGIN: f64 = 1.25;
 
 /// Distance along a leg at which it divides the plan; `None` where it is too short.
-pub(super) fn division_of<const N: usize>(leg: &Leg<N>, limits: &Limits<N>) -> Option<f64> {
+pub(super) fn division_of<const N: usize>(leg: &Segment<N>, limits: &Limits<N>) -> Option<f64> {
     (leg.length > 2.0 * room_beside(leg, limits)).then_some(0.5 * leg.length)
 }
 
 /// Length that a corner and the way between rest, or the corner, and the velocity of a leg take on it at the most.
-pub(crate) fn room_beside<const N: usize>(leg: &Leg<N>, limits: &Limits<N>) -> f64 {
-    let Tangential {
+pub(crate) fn room_beside<const N: usize>(leg: &Segment<N>, limits: &Limits<N>) -> f64 {
+    let PathLimits {
         velocity,
         acceleration,
         jerk,
@@ -32,7 +32,7 @@ pub(crate) fn room_beside<const N: usize>(leg: &Leg<N>, limits: &Limits<N>) -> f
         .max(0.5 * velocity * leg.limits.time_to_change(velocity));
     let tolerance = leg.tolerance.length();
     let turned = (64.0 * tolerance * tolerance * limits.jerk().max()).cbrt();
-    let slowest = Tangential {
+    let slowest = PathLimits {
         velocity,
         acceleration: limits.acceleration().min(),
         jerk: limits.jerk().min(),

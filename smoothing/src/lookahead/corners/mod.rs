@@ -9,13 +9,13 @@ mod offer;
 mod unroll;
 
 use crate::corner::candidates::Selection;
-use crate::corner::shape::TurnShape;
-use crate::lookahead::candidate_graph::{Choice, Lattice};
-use crate::lookahead::unroll::{MOST_PIECES, corner_between};
+use crate::corner::shape::BlendShape;
+use crate::lookahead::candidate_graph::{CandidateGraph, Choice};
+use crate::lookahead::unroll::{MAX_PIECES, corner_between};
 use crate::lookahead::window::{Link, Window};
 use crate::method::{Method, Settings};
-use crate::segment::Leg;
-use crate::segment_merger::{MERGE_SHARE, Merger, ROUNDING_SHARE, Vertex};
+use crate::segment::Segment;
+use crate::segment_merger::{MERGE_SHARE, ROUNDING_SHARE, SegmentMerger, Vertex};
 use division::division_of;
 pub(crate) use division::room_beside;
 use offer::overlapping_of;
@@ -25,27 +25,27 @@ use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 /// Plans the corners of a stream of vertices, from rest to rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Corners<const N: usize> {
-    merger: Merger<N>,
+    merger: SegmentMerger<N>,
     /// The last leg, or part of one, whose end is still open, and the length of the whole.
-    pending: Option<Leg<N>>,
+    pending: Option<Segment<N>>,
     whole: f64,
     /// Whether the plan has been divided since it began.
     cruises: bool,
     selections: Vec<Selection<N>>,
     windows: Vec<Window>,
-    scaled: Vec<VecDeque<TurnShape>>,
+    scaled: Vec<VecDeque<BlendShape>>,
     stops_allowed: bool,
-    lattice: Lattice,
+    lattice: CandidateGraph,
     /// Legs that have not been unrolled; the first `offered` of them are in the lattice.
-    legs: VecDeque<Leg<N>>,
+    legs: VecDeque<Segment<N>>,
     offered: usize,
     /// Scales of uninterrupted corners that may overlap, see [`overlapping_of`].
     overlapping: &'static [f64],
     limits: Limits<N>,
     /// The leg before the next one to be unrolled.
-    last: Option<Leg<N>>,
+    last: Option<Segment<N>>,
     /// The leg before the first that is not in the lattice.
-    last_offered: Option<Leg<N>>,
+    last_offered: Option<Segment<N>>,
     /// How the next leg to be unrolled begins.
     from: Choice,
     pieces: VecDeque<Piece<N>>,
@@ -61,7 +61,7 @@ impl<const N: usize> Corners<N> {
             .map(|selection| Window::new(size, selection.is_balanced()))
             .collect();
         Self {
-            merger: Merger::new(start, settings.limits, share_of(settings.method)),
+            merger: SegmentMerger::new(start, settings.limits, share_of(settings.method)),
             pending: None,
             whole: 0.0,
             cruises: false,
@@ -72,30 +72,30 @@ impl<const N: usize> Corners<N> {
             windows,
             selections,
             stops_allowed: matches!(settings.method, Method::Kcs | Method::ExactStop),
-            lattice: Lattice::new(size.max(FEWEST_WAYS), burst),
-            legs: VecDeque::with_capacity(burst + 3 * size + 2 * FEWEST_WAYS),
+            lattice: CandidateGraph::new(size.max(MIN_WAYS), burst),
+            legs: VecDeque::with_capacity(burst + 3 * size + 2 * MIN_WAYS),
             offered: 0,
             overlapping: overlapping_of(settings.method),
             limits: settings.limits,
             last: None,
             last_offered: None,
             from: AT_REST,
-            pieces: VecDeque::with_capacity(MOST_PIECES + 1),
+            pieces: VecDeque::with_capacity(MAX_PIECES + 1),
         }
     }
 
     /// Begins again at rest at `start`; everything must have been closed and pulled.
     pub(crate) fn restart(&mut self, start: Vector<N>) {
-        self.restart_after(start, TurnShape::STOP);
+        self.restart_after(start, BlendShape::STOP);
     }
 
     /// Begins again on a leg, with a speed from which the leg has room for a stop.
-    pub(crate) fn restart_moving(&mut self, leg: Leg<N>, speed: f64) {
-        self.restart_after(leg.end, TurnShape::through(speed));
+    pub(crate) fn restart_moving(&mut self, leg: Segment<N>, speed: f64) {
+        self.restart_after(leg.end, BlendShape::through(speed));
         self.take_leg(leg);
     }
 
-    fn restart_after(&mut self, start: Vector<N>, shape: TurnShape) {
+    fn restart_after(&mut self, start: Vector<N>, shape: BlendShape) {
         self.merger.restart(start);
         self.pending = None;
         self.cruises = false;
@@ -168,7 +168,7 @@ impl<const N: usize> Corners<N> {
         }
         self.offer();
         if let Some(last) = self.pending.take() {
-            self.end(last, TurnShape::STOP);
+            self.end(last, BlendShape::STOP);
         }
     }
 
@@ -210,18 +210,18 @@ impl<const N: usize> Corners<N> {
         self.offer();
         if let Some(last) = self.pending.take() {
             self.end(
-                Leg {
+                Segment {
                     length: distance,
                     end: last.start + last.direction * distance,
                     ..last
                 },
-                TurnShape::through(speed),
+                BlendShape::through(speed),
             );
         }
     }
 
     /// Ends the motion at the end of a leg.
-    fn end(&mut self, leg: Leg<N>, shape: TurnShape) {
+    fn end(&mut self, leg: Segment<N>, shape: BlendShape) {
         let link = link_of(&leg);
         self.cruises = false;
         self.legs.push_back(leg);
@@ -289,7 +289,7 @@ impl<const N: usize> Corners<N> {
     }
 
     /// Takes a leg, which completes the corner at its start.
-    fn take_leg(&mut self, leg: Leg<N>) {
+    fn take_leg(&mut self, leg: Segment<N>) {
         let whole = leg.length;
         match division_of(&leg, &self.limits) {
             Some(distance) => {
@@ -303,7 +303,7 @@ impl<const N: usize> Corners<N> {
     }
 
     /// Takes a leg, or a part of one of some length.
-    fn join(&mut self, leg: Leg<N>, whole: f64) {
+    fn join(&mut self, leg: Segment<N>, whole: f64) {
         let link = link_of(&leg);
         let before = std::mem::replace(&mut self.whole, whole);
         match self.pending.replace(leg) {
@@ -316,7 +316,7 @@ impl<const N: usize> Corners<N> {
                 let corner = corner_between(&last, &leg, corner_tolerance(&last, &leg));
                 for (selection, window) in self.selections.iter().zip(&mut self.windows) {
                     let shape = if last.stop {
-                        TurnShape::STOP
+                        BlendShape::STOP
                     } else if self.stops_allowed && goes_round(&last, &leg) {
                         selection.interrupted(&corner)
                     } else {
@@ -336,7 +336,7 @@ impl<const N: usize> Corners<N> {
             for window in &mut self.windows {
                 window.divide(leg.limits.velocity);
             }
-            self.legs.push_back(Leg {
+            self.legs.push_back(Segment {
                 cruises: true,
                 ..leg
             });
@@ -350,14 +350,14 @@ impl<const N: usize> Corners<N> {
 const SHORTEST_WINDOW: usize = 2;
 
 /// Fewest corners among whose motions the fastest way is sought.
-const FEWEST_WAYS: usize = 16;
+const MIN_WAYS: usize = 16;
 
 /// Largest turn between two chords of an arc at which only interrupted corners are tried, rad.
 const ROUND: f64 = 0.2;
 
 /// How a path begins.
 const AT_REST: Choice = Choice {
-    shape: TurnShape::STOP,
+    shape: BlendShape::STOP,
     overlap: None,
 };
 
@@ -371,11 +371,11 @@ fn share_of(method: Method) -> f64 {
 
 /// Whether two legs are chords of one arc that turn little, as most do: what an interrupted corner loses there is not
 /// worth what it costs to try others at every chord.
-fn goes_round<const N: usize>(leg: &Leg<N>, next: &Leg<N>) -> bool {
+fn goes_round<const N: usize>(leg: &Segment<N>, next: &Segment<N>) -> bool {
     !leg.ends_before(next) && (next.direction - leg.direction).norm() < ROUND
 }
 
-fn link_of<const N: usize>(leg: &Leg<N>) -> Link {
+fn link_of<const N: usize>(leg: &Segment<N>) -> Link {
     Link {
         length: leg.length,
         limits: leg.limits,
@@ -383,6 +383,6 @@ fn link_of<const N: usize>(leg: &Leg<N>) -> Link {
 }
 
 /// The tolerance of the corner between two legs: what merging has left of both.
-fn corner_tolerance<const N: usize>(leg: &Leg<N>, next: &Leg<N>) -> Tolerance {
+fn corner_tolerance<const N: usize>(leg: &Segment<N>, next: &Segment<N>) -> Tolerance {
     leg.room().min(next.room())
 }

@@ -2,10 +2,10 @@
 //!
 //! Source: ours. Not here: how the candidates are made, and the choice among them.
 
-use crate::corner::shape::TurnShape;
-use crate::lookahead::candidate_graph::MOST_CANDIDATES;
+use crate::corner::shape::BlendShape;
+use crate::lookahead::candidate_graph::MAX_CANDIDATES;
 use crate::lookahead::corners::{Corners, corner_tolerance, goes_round, link_of};
-use crate::lookahead::overlap::Between;
+use crate::lookahead::overlap::OverlappedPair;
 use crate::lookahead::unroll::corner_between;
 use crate::method::Method;
 
@@ -28,7 +28,7 @@ impl<const N: usize> Corners<N> {
             }
         }
         while self.offered < self.legs.len() && self.scaled.iter().all(|queue| !queue.is_empty()) {
-            let mut candidates = [TurnShape::STOP; MOST_CANDIDATES];
+            let mut candidates = [BlendShape::STOP; MAX_CANDIDATES];
             let mut count = 0;
             let leg = &self.legs[self.offered];
             for queue in &mut self.scaled {
@@ -44,7 +44,7 @@ impl<const N: usize> Corners<N> {
                 count = 0;
             }
             if (self.stops_allowed && !leg.cruises) || leg.stop {
-                candidates[count] = TurnShape::STOP;
+                candidates[count] = BlendShape::STOP;
                 count += 1;
             }
             let safe = count;
@@ -68,7 +68,7 @@ impl<const N: usize> Corners<N> {
                 &candidates[..safe],
                 &candidates[safe..count],
                 |from, to, most| {
-                    let between = Between {
+                    let between = OverlappedPair {
                         before: last?,
                         leg,
                         after: next?,

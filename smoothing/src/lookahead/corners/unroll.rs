@@ -5,7 +5,7 @@
 use crate::corner::shape::Part;
 use crate::lookahead::candidate_graph::Choice;
 use crate::lookahead::corners::{Corners, corner_tolerance};
-use crate::lookahead::overlap::Between;
+use crate::lookahead::overlap::OverlappedPair;
 use crate::lookahead::unroll::{corner_between, unroll_corner, unroll_leg};
 
 impl<const N: usize> Corners<N> {
@@ -32,7 +32,7 @@ impl<const N: usize> Corners<N> {
         let next = self.legs.front().or(self.pending.as_ref());
         match (to.overlap, &self.last, next) {
             (Some(duration), Some(before), Some(after)) => {
-                let between = Between {
+                let between = OverlappedPair {
                     before,
                     leg: &leg,
                     after,

@@ -7,13 +7,13 @@
 
 mod progress;
 
-use crate::corner::shape::TurnShape;
+use crate::corner::shape::BlendShape;
 use crate::lookahead::window::{Link, Window};
 use crate::short_segments::curve::Curve;
 use crate::short_segments::spline::Excess;
 use crate::short_segments::velocity_limit::survey;
 use toolglide_kinematics::numeric::LIMIT_SLACK;
-use toolglide_kinematics::{Limits, Tangential};
+use toolglide_kinematics::{Limits, PathLimits};
 use toolglide_profiles::Profile;
 
 /// How much faster than a place allows the progress may be before it is held back there.
@@ -31,7 +31,7 @@ const SLOWER: f64 = 0.995;
 /// The most that a place is slowed by in one round.
 const SLOWEST: f64 = 0.85;
 /// Most places on one stretch.
-pub(super) const MOST_PLACES: usize = 16_384;
+pub(super) const MAX_PLACES: usize = 16_384;
 
 /// How densely and how sharply a stretch is filtered.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +84,7 @@ impl Filter {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     end: f64,
-    limits: Tangential,
+    limits: PathLimits,
     feedrate: f64,
     /// What its speed must be slowed by next, and its changes of speed.
     slower: f64,
@@ -92,7 +92,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn new(end: f64, limits: Tangential, feedrate: f64) -> Self {
+    pub(super) fn new(end: f64, limits: PathLimits, feedrate: f64) -> Self {
         Self {
             end,
             limits,
@@ -105,14 +105,14 @@ impl Place {
 
 /// A place on a stretch at which the progress neither gains nor loses speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Handover {
+pub(super) struct SwitchState {
     /// Time since the beginning of the progress.
     pub(super) time: f64,
     pub(super) distance: f64,
     pub(super) speed: f64,
 }
 
-impl Handover {
+impl SwitchState {
     /// At rest at the beginning.
     pub(super) const AT_REST: Self = Self {
         time: 0.0,
@@ -123,9 +123,9 @@ impl Handover {
 
 /// Speeds along a stretch.
 #[derive(Clone, Debug)]
-pub(super) struct Pace {
+pub(super) struct FeedProfile {
     /// Where the progress begins.
-    start: Handover,
+    start: SwitchState,
     /// Share of the feedrate that is used, and what it must be lowered by next.
     share: f64,
     lower: f64,
@@ -135,21 +135,21 @@ pub(super) struct Pace {
     runs: Vec<(usize, usize)>,
     window: Window,
     links: Vec<Link>,
-    turns: Vec<TurnShape>,
+    turns: Vec<BlendShape>,
 }
 
-impl Pace {
+impl FeedProfile {
     pub(super) fn new() -> Self {
         Self {
-            start: Handover::AT_REST,
+            start: SwitchState::AT_REST,
             share: 1.0,
             lower: 1.0,
-            places: Vec::with_capacity(MOST_PLACES + 1),
-            holds: Vec::with_capacity(MOST_PLACES + 1),
-            runs: Vec::with_capacity(MOST_PLACES + 1),
-            window: Window::new(MOST_PLACES, false),
-            links: Vec::with_capacity(MOST_PLACES + 1),
-            turns: Vec::with_capacity(MOST_PLACES + 1),
+            places: Vec::with_capacity(MAX_PLACES + 1),
+            holds: Vec::with_capacity(MAX_PLACES + 1),
+            runs: Vec::with_capacity(MAX_PLACES + 1),
+            window: Window::new(MAX_PLACES, false),
+            links: Vec::with_capacity(MAX_PLACES + 1),
+            turns: Vec::with_capacity(MAX_PLACES + 1),
         }
     }
 
@@ -160,7 +160,7 @@ impl Pace {
         curve: &Curve<N>,
         limits: &Limits<N>,
         filter: &Filter,
-        start: &Handover,
+        start: &SwitchState,
         share: f64,
     ) -> bool {
         self.places.clear();
@@ -176,7 +176,7 @@ impl Pace {
             share,
             |mut place| {
                 place.limits.jerk *= filter.stiffness;
-                let fits = self.places.len() < MOST_PLACES;
+                let fits = self.places.len() < MAX_PLACES;
                 if fits {
                     self.places.push(place);
                 }
@@ -309,7 +309,7 @@ impl Pace {
         self.turns.clear();
         if self.start.speed > 0.0 {
             self.window
-                .restart_after(TurnShape::through(self.start.speed));
+                .restart_after(BlendShape::through(self.start.speed));
         } else {
             self.window.restart();
         }
@@ -348,7 +348,7 @@ impl Pace {
                     .limits
                     .velocity
                     .min(self.places[first - 1].limits.velocity);
-                self.window.push(TurnShape::through(speed), link);
+                self.window.push(BlendShape::through(speed), link);
             }
             self.links.push(link);
             start = last.end;

@@ -4,21 +4,21 @@
 //! Source: section 3.3.1 for the feed. Not here: where it is held, and at which speed.
 
 use crate::lookahead::window::Link;
-use crate::short_segments::feed_profile::{Handover, Pace};
-use toolglide_profiles::{Connection, Feed, Profile, State};
+use crate::short_segments::feed_profile::{FeedProfile, SwitchState};
+use toolglide_profiles::{Profile, SCurve, SCurveBoundary, State};
 
 /// Share of the speed that a place allows from which the progress passes it at full speed.
 const FULL: f64 = 0.97;
 /// Most instants at which one stretch is looked at.
-const MOST_TICKS: f64 = 20_000.0;
+const MAX_TICKS: f64 = 20_000.0;
 
-impl Pace {
+impl FeedProfile {
     /// The last place at which the progress neither gains nor loses speed and goes as fast as the place
     /// allows; the fastest where there is none.
-    pub(in crate::short_segments) fn handover(&self) -> Option<Handover> {
-        let mut best: Option<Handover> = None;
+    pub(in crate::short_segments) fn handover(&self) -> Option<SwitchState> {
+        let mut best: Option<SwitchState> = None;
         let mut full = false;
-        let mut begin = Handover {
+        let mut begin = SwitchState {
             time: 0.0,
             ..self.start
         };
@@ -28,7 +28,7 @@ impl Pace {
             let feed = Self::feed(link, begin.speed, to)?;
             let cruised = &feed.starts()[4];
             let ends = [
-                Handover {
+                SwitchState {
                     time: begin.time
                         + feed.phases()[..4]
                             .iter()
@@ -37,7 +37,7 @@ impl Pace {
                     distance: begin.distance + cruised.position,
                     speed: cruised.velocity,
                 },
-                Handover {
+                SwitchState {
                     time: begin.time + feed.duration(),
                     distance: begin.distance + link.length,
                     speed: to,
@@ -59,13 +59,13 @@ impl Pace {
         best
     }
 
-    pub(super) fn feed(link: &Link, from: f64, to: f64) -> Option<Feed> {
-        let connection = Connection {
+    pub(super) fn feed(link: &Link, from: f64, to: f64) -> Option<SCurve> {
+        let connection = SCurveBoundary {
             from: [from, 0.0],
             to: [to, 0.0],
             limits: link.limits,
         };
-        Feed::over(link.length, &connection).ok()
+        SCurve::over(link.length, &connection).ok()
     }
 
     /// Gives distance, speed and link at each multiple of `step` after a first instant; `false` when
@@ -76,7 +76,7 @@ impl Pace {
         step: f64,
         mut take: impl FnMut(f64, f64, usize) -> bool,
     ) -> bool {
-        let Handover {
+        let SwitchState {
             distance: mut begin,
             speed: mut from,
             ..
@@ -92,7 +92,7 @@ impl Pace {
                 state.jerk = phase.jerk;
                 let end = time + phase.duration;
                 while first + tick * step < end {
-                    if tick > MOST_TICKS {
+                    if tick > MAX_TICKS {
                         return false;
                     }
                     let now = state.after(first + tick * step - time);

@@ -4,7 +4,7 @@
 //! Bezier points bound the velocity, and where the motion runs, between the knots. Not here: what is done about
 //! it.
 
-use crate::segment::Leg;
+use crate::segment::Segment;
 use crate::short_segments::curve::{Curve, distance_to};
 use crate::short_segments::spline::{Differences, Spline};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
@@ -252,7 +252,7 @@ struct Span<'a, const N: usize> {
     from: Vector<N>,
     to: Vector<N>,
     deviation: f64,
-    legs: &'a [Leg<N>],
+    legs: &'a [Segment<N>],
 }
 
 impl<'a, const N: usize> Span<'a, N> {

@@ -6,11 +6,11 @@
 
 mod check;
 
-use crate::short_segments::Onward;
+use crate::short_segments::Continuation;
 use crate::short_segments::curve::{Control, Curve};
-use crate::short_segments::feed_profile::{Filter, Handover};
+use crate::short_segments::feed_profile::{Filter, SwitchState};
 pub(super) use check::Excess;
-use toolglide_kinematics::{Piece, Sample, Serves, Vector};
+use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
 
 /// Change of the progress from step to step that is nothing but rounding, relative.
 const STEADY: f64 = 1e-10;
@@ -45,7 +45,7 @@ pub(super) struct Spline<const N: usize> {
     /// Pieces beside one in which it may pass what it has on its path.
     around: usize,
     /// Where another progress may go on.
-    pub(super) handover: Option<Handover>,
+    pub(super) handover: Option<SwitchState>,
 }
 
 impl<const N: usize> Spline<N> {
@@ -155,11 +155,11 @@ impl<const N: usize> Spline<N> {
         clippy::cast_sign_loss,
         reason = "counts are small and not negative"
     )]
-    pub(super) fn handover(&self, curve: &Curve<N>) -> Option<(usize, Handover)> {
+    pub(super) fn handover(&self, curve: &Curve<N>) -> Option<(usize, SwitchState)> {
         let last = curve.legs().len() - 1;
         let begin = self.controls.partition_point(|control| control.leg < last) + 2;
         if let Some(index) = (begin..self.controls.len()).find(|&index| self.is_steady(index)) {
-            let handover = Handover {
+            let handover = SwitchState {
                 time: self.origin + (index as f64 + 2.0) * self.step,
                 distance: self.progress[index + 2],
                 speed: self.speed(index),
@@ -194,9 +194,9 @@ impl<const N: usize> Spline<N> {
     pub(super) fn onward(
         &self,
         settled: usize,
-        handover: &Handover,
+        handover: &SwitchState,
         curve: &Curve<N>,
-    ) -> (Onward<N>, usize) {
+    ) -> (Continuation<N>, usize) {
         let mut controls = [0, 1, 2].map(|offset| self.controls[settled + offset - 2]);
         let back = 2.0 * controls[0].distance - controls[2].distance;
         let legs = curve.leg_at(back.max(0.0), controls[0].leg);
@@ -206,11 +206,11 @@ impl<const N: usize> Spline<N> {
             control.distance -= passed;
         }
         let next = self.origin + (settled as f64 + 2.0) * self.step;
-        let onward = Onward {
+        let onward = Continuation {
             filter: Filter::sharp(self.step, self.sharpening),
             controls,
             progress: [0, 1].map(|offset| self.progress[settled + offset] - passed),
-            start: Handover {
+            start: SwitchState {
                 time: 0.0,
                 distance: handover.distance - passed,
                 speed: handover.speed,
@@ -234,7 +234,7 @@ impl<const N: usize> Spline<N> {
         };
         let end = c + seconds[1] / 6.0;
         let [first, .., last] = self.four(index);
-        let serves = Serves {
+        let serves = MoveRange {
             first: first.serves.first,
             last: last.serves.last,
         };

@@ -12,7 +12,7 @@ use toolglide_kinematics::OrientationTolerance;
 use toolglide_kinematics::ToolPose;
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
-use toolglide_kinematics::{AxisVector, MOST_AXES};
+use toolglide_kinematics::{AxisVector, MAX_AXES};
 use toolglide_kinematics::{PoseLeg, PosePath};
 
 /// Share of the difference of an axis that counts where the tool does not tell it.
@@ -36,9 +36,9 @@ pub(super) struct Row {
     /// Pose of the row before; its own for the first.
     pub(super) from: ToolPose,
     /// Which axes are rotary.
-    pub(super) rotary: [bool; MOST_AXES],
+    pub(super) rotary: [bool; MAX_AXES],
     /// Directions in which the tool moves with each rotary axis.
-    pub(super) swings: [Vector<3>; MOST_AXES],
+    pub(super) swings: [Vector<3>; MAX_AXES],
     /// Axis positions of the row before; its own for the first.
     pub(super) axes_before: AxisVector,
     /// What rounding may do to the tip, mm, and to the orientation, rad.

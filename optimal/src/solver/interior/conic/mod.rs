@@ -3,7 +3,7 @@
 mod table;
 
 use crate::solver::interior::*;
-use crate::window::{EndState, Segment, Window};
+use crate::window::{EndState, Window, WindowSegment};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use table::conic;
@@ -19,7 +19,7 @@ const PRECISION: Precision = Precision {
 const AGREEMENT: f64 = 1e-6;
 
 /// What rounding may leave of the gap where it ends a solve early.
-const LEAST_PRECISION: f64 = 1e-6;
+const MIN_PRECISION: f64 = 1e-6;
 
 /// A random window: turns, lengths, limits, a start at speed.
 fn compare<const N: usize>(
@@ -36,7 +36,7 @@ fn compare<const N: usize>(
         if way.norm() < 0.1 {
             continue;
         }
-        segments.push(Segment {
+        segments.push(WindowSegment {
             start: corner,
             end: corner + way,
             tolerance,
@@ -88,7 +88,7 @@ fn compare<const N: usize>(
         let outcome = interior.solve(&mut problem, goal, &PRECISION, u32::MAX);
         // Rounding may end it a little earlier; then it is as good as that.
         prop_assert!(
-            outcome.gap < LEAST_PRECISION && outcome.miss < LEAST_PRECISION,
+            outcome.gap < MIN_PRECISION && outcome.miss < MIN_PRECISION,
             "{goal:?}: {outcome:?}"
         );
         let unit = problem.degree() / ROWS_PER_UNIT;

@@ -4,7 +4,7 @@
 //! Source: as [`problem`](crate::problem), written once more without chains and coefficients. Not here: what
 //! is compared.
 
-use crate::problem::constraints::{Kept, Rows};
+use crate::problem::constraints::{Constraint, Rows};
 use crate::problem::{NodeRows, Problem, Visit};
 use crate::solver::interior::Goal;
 use crate::solver::interior::conic::{PRECISION, ROWS_PER_UNIT, weight_of_excess};
@@ -76,7 +76,7 @@ impl Table {
 
 /// Lists what every point keeps.
 struct List<const N: usize> {
-    points: Vec<(Chain<N>, Kept<N>)>,
+    points: Vec<(Chain<N>, Constraint<N>)>,
 }
 
 impl<const N: usize> Visit<N> for List<N> {
@@ -236,7 +236,7 @@ fn keep<const N: usize>(
         };
         let unit = |axis: usize| Vector::<N>::from_fn(|row, _| f64::from(u8::from(row == axis)));
         match kept {
-            Kept::Box(bounds) => {
+            Constraint::Box(bounds) => {
                 for axis in 0..N {
                     for sign in [1.0, -1.0] {
                         let mut entries = along(&unit(axis), sign * bounds[axis]);
@@ -245,7 +245,7 @@ fn keep<const N: usize>(
                     }
                 }
             }
-            Kept::Disc(disc) => {
+            Constraint::Disc(disc) => {
                 table.row(disc.room, &[(excess, 1.0)]);
                 for axis in 0..N {
                     let entries = along(&unit(axis), disc.by_radius);
@@ -253,7 +253,7 @@ fn keep<const N: usize>(
                 }
                 table.cones.push(SupportedConeT::SecondOrderConeT(N + 1));
             }
-            Kept::Tube(tube) => {
+            Constraint::Tube(tube) => {
                 let offset = tube.direction.dot(&tube.start) / tube.length;
                 let share = 1.0 / tube.length;
                 let progress = table.unknowns;
