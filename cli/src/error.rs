@@ -1,4 +1,4 @@
-//! Why a run ends without a result, and which exit code says so.
+//! Names every reason why a run ends without a result, with its exit code.
 //!
 //! Not here: a verification that failed, which is a result.
 

@@ -1,5 +1,5 @@
-//! The `toolglide` command as a library: [`run`] takes arguments and streams and gives the exit
-//! code, so that tests and other programs need no process.
+//! Runs the `toolglide` command as a library: [`run`] takes arguments and streams and returns the
+//! exit code, so that tests and other programs need no process.
 //!
 //! Exit codes: [`DONE`] when all is well, [`OUTSIDE`] when the motion breaks a limit, [`REFUSED`] for
 //! wrong use or wrong input, [`INTERRUPTED`] and [`TERMINATED`] when a signal ends the process, which

@@ -1,5 +1,4 @@
-//! The `toolglide` command: the library's [`run`](toolglide_cli::run) with the streams of the
-//! process.
+//! Runs the library's [`run`](toolglide_cli::run) with the streams of the process.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! The methods by name: the only file that knows which planners there are.
+//! Lists the methods by name, the only file that knows the planners.
 //!
 //! Everything else speaks to [`MotionPlanner`].
 

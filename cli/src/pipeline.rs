@@ -1,4 +1,4 @@
-//! From the lines of a program to judged, sampled and drawn motion, a batch at a time.
+//! Plans, judges, samples and draws a program, a batch of lines at a time.
 //!
 //! What is held is a batch of moves, a batch of pieces, and the window of the planner, however long
 //! the program is. The time that the planner takes is measured around batches, because a clock

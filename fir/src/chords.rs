@@ -1,4 +1,4 @@
-//! Arcs as sequences of chords whose filtered motion is that of the arc.
+//! Divides arcs into chords whose filtered motion is that of the arc.
 //!
 //! Source: section 4.2.3 for the arc. The chords are ours: their vertices lie outside the arc by two
 //! thirds of the sagitta, so that the mean distance is none and the filters, which average over many

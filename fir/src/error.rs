@@ -1,4 +1,4 @@
-//! Why a filter chain or a plan of filtered pulses is refused.
+//! Names every reason why a filter chain or a plan of filtered pulses is refused.
 //!
 //! Source: section 4.2. Not here: what is wrong with a path, which `kinematics` says.
 

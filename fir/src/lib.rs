@@ -1,6 +1,5 @@
-//! FIR interpolation: a feedrate that is commanded in rectangular pulses becomes smooth by passing
-//! through moving averages, which round the corners of the path, too, and silence the modes whose
-//! periods they have.
+//! Interpolates by FIR filters: moving averages smooth rectangular pulses of feedrate, round the
+//! corners of the path, and silence modes of vibration.
 //!
 //! [`FilterChain`] is a chain of moving averages with its exact responses. [`FirInterpolation`] plans
 //! while a path streams in; [`plan`] does so for a whole toolpath. This crate does not know

@@ -1,4 +1,4 @@
-//! Moves in, motion out: pulses, their times, and the pieces behind the filters.
+//! Runs the stages of FIR interpolation, from moves to pieces behind the filters.
 //!
 //! Source: sections 4.2 and 4.3. Not here: any formula; see the chain, the look-ahead and the sweep.
 

@@ -1,4 +1,4 @@
-//! A straight pulse of feedrate, as the look-ahead sees it.
+//! Describes a straight pulse of feedrate to the look-ahead.
 //!
 //! Source: section 4.2, where a block is a rectangular pulse; arcs are sequences of chords here. Not
 //! here: its filtered motion.

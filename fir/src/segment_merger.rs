@@ -1,4 +1,5 @@
-//! Short moves merged into longer straight ones inside the tolerance, before they become pulses.
+//! Merges short moves into longer straight segments inside the tolerance, before they become
+//! pulses.
 //!
 //! Source: ours; section 4.3 takes moves as they come, and looking ahead over hundreds of them in one
 //! window costs as much as it gains. Every corner that a straight leg leaves out lies within a share of

@@ -1,4 +1,4 @@
-//! What a plan must keep, and which filters it may use.
+//! Holds limits, method and filters of a plan.
 //!
 //! Source: section 4.2.2 for the choice of time constants. Not here: the planning.
 

@@ -1,4 +1,4 @@
-//! Pulses of velocity in, pieces of constant jerk out: the exact motion behind a chain of filters.
+//! Sweeps pulses through a chain of filters into exact pieces of constant jerk.
 //!
 //! Source: equations 4.1 to 4.7 for any sequence of pulses. Behind two moving averages the jerk is a
 //! sum of commanded velocities at four delays, so a knot costs a few additions however many pulses

@@ -1,4 +1,4 @@
-//! Why a pose motion cannot be planned.
+//! Names every reason why a pose motion cannot be planned.
 //!
 //! Source: the house style of messages: place, quantity, value, bound. Not here: what a motion
 //! breaks, which the judge says.

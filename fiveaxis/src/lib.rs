@@ -1,5 +1,5 @@
-//! Tool tip and tool orientation together: pose motion without stops, inside both tolerances and the
-//! limits of every axis of the machine behind.
+//! Plans tool tip and tool orientation together, inside both tolerances and the limits of every
+//! axis of the machine.
 //!
 //! Source: chapter 5 of the dissertation, with closed forms instead of its quartics. [`PosePlanner`]
 //! takes legs of poses and gives pieces of motion; [`PoseMethod`] says how corners are taken. This

@@ -1,4 +1,4 @@
-//! What a planner of poses is told once.
+//! Holds the settings of a pose planner: method, filters, tolerances.
 //!
 //! Source: sections 5.2 and 5.3. Not here: what legs say for themselves.
 

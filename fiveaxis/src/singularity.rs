@@ -1,4 +1,4 @@
-//! Turns in place where an axis does not matter to the tool: at the pole of a machine.
+//! Turns an axis in place at the singularity of a machine, where it has no influence on the tool.
 //!
 //! Source: ours. A move that leaves a pole in another direction than it was entered needs one axis
 //! to stand elsewhere at once. The motion rests there, the tool leans by a small share of its tolerance,

@@ -1,4 +1,4 @@
-//! Circular moves, flat or helical, in any number of axes.
+//! Describes circular moves, flat or helical, in any number of axes.
 //!
 //! Source: section 4.2.3 for the circle; the lift and the slightly unequal radii are ours, because
 //! real programs have both. Not here: chords, which a planner makes inside its tolerance.

@@ -1,4 +1,4 @@
-//! Positions of the axes of a machine, and the ways in which a machine can take a pose.
+//! Holds positions of the axes of a machine, and all solutions of a pose.
 //!
 //! Source: ours; both are of fixed capacity, because set-points are made without allocation. Not
 //! here: machines.

@@ -1,4 +1,4 @@
-//! Where two straight moves meet.
+//! Describes the corner where two straight moves meet.
 //!
 //! Source: sections 2.3 and 3.2, with the turn measured by half-angle vectors instead of an inverse
 //! cosine, so that it is exact near 0 and near 180 degrees. Not here: any motion.

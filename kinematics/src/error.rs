@@ -1,4 +1,4 @@
-//! What can be wrong with limits and paths.
+//! Names every fault of limits and paths.
 
 use crate::numeric::{LARGEST_COORDINATE, LARGEST_QUANTITY, LONGEST_RAMP, MIN_QUANTITY};
 use thiserror::Error;

@@ -1,4 +1,4 @@
-//! Limits of velocity, acceleration and jerk, per axis.
+//! Holds limits of velocity, acceleration and jerk per axis.
 //!
 //! Source: section 2.2; the projection on a direction replaces the case tables of sections 2.3
 //! and 3.2. Not here: travel, which belongs to a machine.

@@ -1,4 +1,4 @@
-//! What a machine is to a planner: axes, and the map between axis positions and tool pose.
+//! Defines the seam to a machine: axes, and the map between axis positions and tool pose.
 //!
 //! Source: section 5.2 for the map; linear machines of chapters 2 to 4 are the identity. Not here:
 //! machines themselves.

@@ -1,4 +1,4 @@
-//! Every numerical threshold of the workspace, each with its unit and its reason.
+//! Lists the numerical thresholds that several files share, each with its unit and its reason.
 //!
 //! What a user may want different is an argument; what only float arithmetic needs stands here.
 

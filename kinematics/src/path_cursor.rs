@@ -1,4 +1,4 @@
-//! What every planner keeps of the path that it takes: where it has come to, and how many moves it has.
+//! Tracks where a planner is on its path and how many moves it has taken.
 //!
 //! Source: the order of [`crate::MotionPlanner`]. Not here: what becomes of the moves.
 

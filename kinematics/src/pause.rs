@@ -1,4 +1,4 @@
-//! Rest for a time, or moves that led nowhere, as motion.
+//! Represents a rest for a time, or moves that lead nowhere, as motion.
 //!
 //! Source: the dwell of a program, and moves shorter than what is told apart. Not here: coming to rest.
 

@@ -1,4 +1,4 @@
-//! A stretch of motion between two knots.
+//! Represents motion of constant jerk between two knots.
 //!
 //! Source: the phases of chapters 2 and 3, each of constant jerk. Not here: which method made it.
 

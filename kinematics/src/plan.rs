@@ -1,4 +1,5 @@
-//! Timed motion: a trajectory, a plan of pieces, and the sampler that ticks through either.
+//! Represents timed motion: a trajectory, a plan of pieces, and the sampler that ticks through
+//! either.
 //!
 //! Source: section 2.2 for the pieces, sampled at exact instants instead of rounding the phases to
 //! the period. Not here: planning.

@@ -1,4 +1,4 @@
-//! The seam between a stream of moves and a stream of motion.
+//! Defines the seam between a stream of moves and a stream of pieces.
 //!
 //! Source: the look-ahead windowing of section 3.3 plans while it reads. Not here: any method.
 

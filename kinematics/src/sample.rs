@@ -1,4 +1,4 @@
-//! The state of a motion at an instant, and the period at which a controller asks for it.
+//! Represents the state of a motion at an instant, and the sample period of a controller.
 //!
 //! Source: section 2.2. Not here: what makes the motion.
 

@@ -1,4 +1,4 @@
-//! How far the motion may leave the path, and how fast it may follow it.
+//! Bounds how far the motion may leave the path, and how fast it may follow it.
 //!
 //! Source: the corner error of sections 2.3 and 3.2. The tolerance of the orientation
 //! is that of section 5.3.

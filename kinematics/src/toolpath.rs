@@ -1,4 +1,4 @@
-//! The path as it was programmed: lines, arcs and dwells, in order.
+//! Represents the programmed path: lines, arcs and dwells, in order.
 //!
 //! Source: chapter 3 plans over lines, chapter 4 over lines and arcs. Not here: time.
 

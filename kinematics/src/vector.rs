@@ -1,4 +1,4 @@
-//! Vectors of one coordinate per axis.
+//! Represents vectors of one coordinate per axis.
 //!
 //! Source: section 2.3 of the dissertation writes everything per axis; here it is written in vectors.
 //! Not here: rotations and poses, see [`ToolPose`](crate::ToolPose).

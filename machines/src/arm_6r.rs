@@ -1,4 +1,4 @@
-//! An arm of six rotary axes with two parallel ones and a spherical wrist: axes 1 to 6.
+//! Models an arm of six rotary axes with two parallel ones and a spherical wrist: axes 1 to 6.
 //!
 //! Source: Brandstötter, Angerer and Hofbaur, *An analytical solution of the inverse kinematics problem of
 //! industrial serial manipulators with an ortho-parallel basis and a spherical wrist* (2014), whose

@@ -1,4 +1,4 @@
-//! What a machine file says, checked field by field.
+//! Checks a machine file field by field.
 //!
 //! Source: the fields of [`toolglide_kinematics::Axis`]. Not here: which axes a model needs, which
 //! the model itself checks.

@@ -1,4 +1,4 @@
-//! Two motors and one belt: both turn for X, against each other for Y; axes U and V, or U, V and Z.
+//! Models two motors that share one belt: axes U and V, or U, V and Z.
 //!
 //! Source: the belt's length, U = X + Y and V = X - Y. Not here: anything that tilts the tool.
 

@@ -1,4 +1,5 @@
-//! Three carriages on upright towers carry the tool by rods of equal length: axes U, V and W.
+//! Models three carriages on upright towers that carry the tool by rods of equal length: axes U, V
+//! and W.
 //!
 //! Source: Pythagoras for the inverse, the cut of three spheres for the forward map. The towers stand
 //! at 90, 210 and 330 degrees. Not here: deltas with turning arms.

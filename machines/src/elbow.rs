@@ -1,4 +1,4 @@
-//! Two links and the elbow between them, in a plane: where the hand is, and both ways to get it there.
+//! Solves two links and the elbow between them in a plane, both ways.
 //!
 //! Source: the law of cosines, with the half-angle tangent in place of arccos, which loses half of
 //! its digits where the links are nearly straight or folded. Not here: which joints these are.

@@ -1,4 +1,4 @@
-//! What can be wrong with a machine and its file.
+//! Names every fault of a machine and its file.
 
 use std::path::PathBuf;
 use thiserror::Error;

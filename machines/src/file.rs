@@ -1,4 +1,4 @@
-//! Machine files in TOML, and the schema that editors check them with.
+//! Reads machine files in TOML and prints their JSON Schema.
 //!
 //! Source: [`MachineConfig`]. Not here: building the machine.
 

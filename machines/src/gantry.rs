@@ -1,4 +1,4 @@
-//! Two or three linear axes at right angles: the tool goes where the axes go.
+//! Models two or three linear axes at right angles.
 //!
 //! Source: the machines of chapters 2 to 4, whose kinematics is the identity. Not here: anything
 //! that turns.

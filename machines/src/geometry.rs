@@ -1,4 +1,4 @@
-//! The distances in the structure of a machine, as its model asks for them and its file gives them.
+//! Reads the distances in the structure of a machine, as its model asks for them.
 //!
 //! Source: the table `[geometry]` of machine files. Not here: what a distance means to the
 //! kinematics.

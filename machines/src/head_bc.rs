@@ -1,4 +1,5 @@
-//! A portal machine with a fork head: C turns the fork, B tilts the spindle in it; axes X, Y, Z, B and C.
+//! Models a portal machine with a fork head: C turns the fork, B tilts the spindle; axes X, Y, Z, B
+//! and C.
 //!
 //! Source: section 5.2 turned around, P + w = q + Rz(C)·(b + Ry(B)·(0, 0, -pivot)) and
 //! O = Rz(C)·Ry(B)·e_z. Not here: signs, zeros, turns and travel, which [`Assembly`] adds.

@@ -1,5 +1,5 @@
-//! A machine whose head tilts the tool about Y and whose table turns the workpiece about Z: axes X, Y,
-//! Z, B and C.
+//! Models a machine whose head tilts the tool about Y and whose table turns the workpiece about Z:
+//! axes X, Y, Z, B and C.
 //!
 //! Source: section 5.2 shared out, c0 + Rz(C)·(P + w) = q + Ry(B)·(0, 0, -pivot) and
 //! Rz(C)·O = Ry(B)·e_z. Not here: signs, zeros, turns and travel, which [`Assembly`] adds.

@@ -1,4 +1,4 @@
-//! Machines as plugins: what a machine file may say, and which machines can be built from it.
+//! Registers machines as plugins and builds them from machine files.
 //!
 //! A machine is one file that ends with its registration; nothing else in the workspace names it.
 //! Programs list the machines with [`models`] and build them by name with [`find`]; a controller

@@ -1,4 +1,4 @@
-//! Which machines there are.
+//! Lists the registered machines.
 //!
 //! Source: machines register themselves by the `inventory` crate, which promises no order, so every
 //! list is sorted here. Not here: machines.

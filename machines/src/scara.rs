@@ -1,4 +1,4 @@
-//! Two links that turn about upright axes over the workpiece, and a quill: axes A, B and Z.
+//! Models two links that turn about upright axes over the workpiece, and a quill: axes A, B and Z.
 //!
 //! Source: two links in a plane, elbow to either side. Not here: turning the tool about itself, which a
 //! tool pose does not ask for.

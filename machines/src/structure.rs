@@ -1,4 +1,4 @@
-//! What of a machine is its own, and everything around it that all machines share.
+//! Separates the structure of a machine from what all machines share: signs, zeros, turns, travel.
 //!
 //! Source: the map of section 5.2 between joints and tool pose is the machine's own ([`Structure`]);
 //! signs and zeros of axes, whole turns, travel, the workpiece zero and the choice among branches

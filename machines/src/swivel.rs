@@ -1,4 +1,4 @@
-//! Two rotary axes that point a direction: one spins about Z, the other tilts away from it.
+//! Points two rotary axes at a direction: one spins about Z, the other tilts away from it.
 //!
 //! Source: the angles of section 5.2, with atan2 in place of arccos, which loses half of its digits
 //! near the pole. Not here: which machine axes these are.

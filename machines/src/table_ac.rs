@@ -1,4 +1,5 @@
-//! A vertical machine whose table tilts about X and turns the workpiece: axes X, Y, Z, A and C.
+//! Models a vertical machine whose table tilts about X and turns the workpiece: axes X, Y, Z, A and
+//! C.
 //!
 //! Source: section 5.2, p = a0 + Rx(A)·(d + Rz(C)·(P + w)) and Rx(A)·Rz(C)·O = e_z. Not here:
 //! the kinematics of tilting tables, see `tilting_table`.

@@ -1,4 +1,5 @@
-//! A vertical machine whose table tilts about Y and turns the workpiece: axes X, Y, Z, B and C.
+//! Models a vertical machine whose table tilts about Y and turns the workpiece: axes X, Y, Z, B and
+//! C.
 //!
 //! Source: section 5.2, p = b0 + Ry(B)·(d + Rz(C)·(P + w)) and Ry(B)·Rz(C)·O = e_z. Not here:
 //! the kinematics of tilting tables, see `tilting_table`.

@@ -1,4 +1,4 @@
-//! A table that tilts about a level axis and carries a rotary table: what such machines share.
+//! Solves a table that tilts about a level axis and carries a rotary table.
 //!
 //! Source: section 5.2, p = t0 + Rt(T)·(d + Rz(C)·(P + w)) and Rt(T)·Rz(C)·O = e_z, solved by atan2, where T
 //! tilts about X or Y. Not here: which of the two, see `table_ac` and `table_bc`; signs, zeros, turns and

@@ -1,4 +1,4 @@
-//! Two motions along the same path, side by side: the faster one of every stretch is handed out.
+//! Compares two motions along the same path and hands out the faster one of every section.
 //!
 //! Source: ours. A stretch ends where both motions rest, or where both pass the middle of a long move on
 //! its line at its feedrate: there the one may take the place of the other. A stretch too long to be held

@@ -1,4 +1,4 @@
-//! Time-optimal motion for whole programs, planned in a streaming window.
+//! Plans time-optimal motion for whole programs in a streaming window.
 //!
 //! A [`Window`] of consecutive straight pieces with a state at each end is solved for the fastest
 //! motion inside the tolerance and the limits by a [`WindowSolver`]. This crate does not know

@@ -1,4 +1,4 @@
-//! The planner: time-optimal motion, and smoothed corners where they are faster.
+//! Plans time-optimal motion, and smoothed corners where they are faster.
 //!
 //! Source: ours. Both plan the whole path; of every stretch the faster motion is handed out, so that it is
 //! never slower than smoothed corners. Not here: either plan, and what a stretch is.

@@ -1,4 +1,4 @@
-//! What a plan must keep, and how much may be spent on it.
+//! Holds limits and effort of a plan.
 //!
 //! Source: ours, from measurements. Not here: the planning.
 

@@ -1,4 +1,4 @@
-//! Moves in, motion out: the stages of time-optimal planning in a row.
+//! Runs the stages of time-optimal planning, from moves to pieces.
 //!
 //! Source: ours. Moves become straight vertices, those become runs, runs are cut into spans, and spans
 //! are planned in windows. Stops and pauses divide the path into stretches. Not here: any formula, and

@@ -1,4 +1,4 @@
-//! The seam between a way of turning a corner and whoever plans a path of corners.
+//! Defines the seam between a kind of corner blend and the planner that uses it.
 //!
 //! Source: chapters 2, 3 and 5 turn corners differently and are planned alike. Not here: any corner.
 

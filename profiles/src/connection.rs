@@ -1,4 +1,4 @@
-//! Two ends of a straight stretch, and the fastest way between them over a distance.
+//! Connects two ends of a straight segment over a distance in least time.
 //!
 //! Source: section 3.3.1, equations 3.11 to 3.25; the peak speed is searched on the distance that it
 //! needs, which is exact in every degenerate case, instead of by the printed quadratic and quartic.

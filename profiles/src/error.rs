@@ -1,4 +1,4 @@
-//! Why a law of motion cannot be.
+//! Names every reason why a profile cannot exist.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! Seven-phase motion over a distance between two corners.
+//! Solves the seven-phase S-curve over a distance between two corners.
 //!
 //! Source: section 3.3.1, equations 3.11 to 3.25. Not here: the search for the peak speed.
 

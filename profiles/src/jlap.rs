@@ -1,4 +1,4 @@
-//! Jerk-limited acceleration profile: from one speed and acceleration to another, in least time.
+//! Solves the jerk-limited acceleration profile between two speeds and accelerations in least time.
 //!
 //! Source: section 2.2, equations 2.7 to 2.18, with the direction of the jerk taken from what the
 //! direct ramp leaves to do instead of from the difference of the speeds. Not here: a distance to

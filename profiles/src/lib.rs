@@ -1,5 +1,4 @@
-//! Jerk-limited laws of motion along one coordinate, and the seam that every corner motion
-//! implements.
+//! Solves jerk-limited motion along one coordinate, and defines the seam of corner blends.
 //!
 //! A law of motion is solved by its constructor and evaluated through [`Profile`]; every closed form
 //! is accepted only after it has been integrated forward and found to meet its request. This crate

@@ -1,4 +1,4 @@
-//! Stretches of constant jerk, and integrating them forward.
+//! Integrates phases of constant jerk forward.
 //!
 //! Source: section 2.2, equations 2.1 to 2.6. Not here: how long the phases must last.
 

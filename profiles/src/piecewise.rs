@@ -1,4 +1,4 @@
-//! Motion of one coordinate as contiguous polynomials: the exact form of every profile.
+//! Represents motion of one coordinate by contiguous polynomials, the exact form of every profile.
 //!
 //! Source: section 2.2 for constant jerk; filtered pulses of chapter 4 are polynomials of a higher
 //! degree. Not here: how a motion comes about.

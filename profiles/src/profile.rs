@@ -1,4 +1,4 @@
-//! What a law of motion can be asked.
+//! Defines the questions that every profile answers.
 //!
 //! Source: section 2.2. Not here: any law.
 

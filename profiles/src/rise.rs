@@ -1,4 +1,4 @@
-//! Raising the speed to a peak: half of a motion between two boundaries.
+//! Raises the speed to a peak: half of a motion between two boundaries.
 //!
 //! Source: section 3.3.1, one side of equation 3.17, integrated phase by phase because the printed
 //! closed form cancels for small accelerations. Lowering the speed is the same, mirrored in time.

@@ -1,4 +1,4 @@
-//! RS274/NGC part programs as a stream of moves.
+//! Reads part programs into a stream of moves or of tool poses.
 //!
 //! [`Program`] reads a part program line by line and yields
 //! [`Move`](toolglide_kinematics::Move)s in mm and s; it holds one line at a time, whatever the

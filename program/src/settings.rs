@@ -1,4 +1,4 @@
-//! What a reader of programs must know beside the program.
+//! Holds the settings of a reader of programs.
 //!
 //! Not here: what the program itself says.
 

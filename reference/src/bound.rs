@@ -1,4 +1,4 @@
-//! Bounds from below: no motion can be faster.
+//! Bounds the duration of every motion from below.
 //!
 //! Source: whatever jerk does inside an interval, its moments keep known bounds, and with them the
 //! samples of any motion keep the relaxed program. Its dual gives a number below every such motion,

@@ -1,4 +1,4 @@
-//! A proof that no motion around one corner is faster, however it shares its time.
+//! Proves that no motion around one corner is faster, for all time fractions.
 //!
 //! Source: branch and bound over the instant at which the corner is passed. For all instants within an
 //! interval of time one relaxed program bounds the duration: both ends of the interval are near the

@@ -1,4 +1,4 @@
-//! Where each unknown of the program stands, and what it is scaled by.
+//! Assigns each unknown of the program its column and its scale.
 //!
 //! Source: time is scaled so that the dynamics do not contain its stretch `g`: velocity `V v / g`,
 //! acceleration `A a / g²`, jerk `J j / g³`, and `gamma = g³` is the unknown that is minimized. All

@@ -1,4 +1,4 @@
-//! Straight legs between two rests, and what a motion along them must keep.
+//! Describes straight segments between two rests, and the constraints of a motion along them.
 //!
 //! Source: section 3.2 for the corner, whose error is the distance to it. A course is pure geometry:
 //! what of a [`Toolpath`](toolglide_kinematics::Toolpath) lies between two stops. Not here: how arcs

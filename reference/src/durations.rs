@@ -1,4 +1,4 @@
-//! Shares of time on the legs, by exact solutions and linearized steps in turn.
+//! Finds the time fractions of the segments by exact solutions and linearized steps in turn.
 //!
 //! Source: for given shares the optimum is one convex program; its dependence on them has kinks, so
 //! gradients are of little use. A second program, linearized in the durations, proposes a step

@@ -1,4 +1,4 @@
-//! Why there is no optimum.
+//! Names every reason why there is no optimum.
 //!
 //! Not here: what is wrong with a path or a limit, which their own crate refuses.
 

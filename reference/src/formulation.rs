@@ -1,4 +1,4 @@
-//! The least time along a course as one convex program.
+//! States the least time along a course as one convex program.
 //!
 //! Source: with scaled unknowns (see [`Columns`]) the limits of velocity, acceleration and jerk are the
 //! powers 1/3, 2/3 and 1 of `gamma`, all concave, so least time is one program of second-order cones

@@ -1,4 +1,4 @@
-//! Intervals of time: how many serve each leg, and how long they are.
+//! Divides time into intervals: how many serve each segment, and how long they are.
 //!
 //! Source: the relative grid on which the minimum of time is one convex program; only a common factor
 //! is left open. Not here: that factor.

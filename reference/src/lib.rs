@@ -1,4 +1,4 @@
-//! The time-optimal reference: how far a plan is from the best that physics allows.
+//! Computes the time-optimal reference: how far a plan is from the best that physics allows.
 //!
 //! A course of straight legs is followed inside the tolerance and inside the limits of velocity,
 //! acceleration and jerk of every axis, from rest to rest. [`optimum`] finds the fastest such motion, an

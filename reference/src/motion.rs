@@ -1,4 +1,4 @@
-//! The states of a motion on a grid, and the program solved until its scale is sane.
+//! Solves the program for the states of a motion on a grid until its scale is sane.
 //!
 //! Source: a program scaled far from its solution ends "solved" with a wrong stretch, because all of it
 //! then lies below the precision. So it is scaled by what it found and solved again. Not here:

@@ -1,4 +1,4 @@
-//! The time-optimal motion along a course.
+//! Computes the time-optimal motion along a course.
 //!
 //! Source: durations by the sequential scheme on samples, then once more with Bezier points in the
 //! tube, so that the motion is allowed at every instant, and a bound from below at the same shares of

@@ -1,4 +1,4 @@
-//! From the states that a solver found to motion that is exact.
+//! Turns the states that a solver found into exact pieces of motion.
 //!
 //! Source: a solver leaves residuals of some 1e-8. Jerks are integrated exactly, and over every few
 //! intervals corrected by the least change that reaches the state wanted there; then the whole is

@@ -1,4 +1,4 @@
-//! The time-optimal motion as a method of planning, for short programs and for patience.
+//! Offers the time-optimal motion as a planning method for short programs.
 //!
 //! Source: each section between stops is one optimum. A section of more than [`LONGEST`] legs is cut
 //! at a sharp corner, where the motion then stops, so that memory stays bounded and the time grows with

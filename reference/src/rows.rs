@@ -1,4 +1,4 @@
-//! A convex program as rows of three cones, in plain vectors.
+//! Holds a convex program as rows of three cones, in plain vectors.
 //!
 //! Source: the standard form of conic solvers: minimize one linear cost subject to `rows in cones`. A
 //! row is an affine expression of the columns. Not here: what the rows mean, and who solves them.

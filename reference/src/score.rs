@@ -1,4 +1,4 @@
-//! How far motions are from the optimum of their course.
+//! Scores motions against the optimum of their course.
 //!
 //! Source: a score is the duration of the optimum over that of a motion; legs dilute it, so what the
 //! corners cost stands beside it. Every motion is also held against the bound at its own shares of time,

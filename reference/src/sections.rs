@@ -1,4 +1,4 @@
-//! From moves to courses: what lies between two stops of a program.
+//! Cuts moves into courses between two stops of a program.
 //!
 //! Source: the motion is at rest at exact stops, dwells, and both ends, so the parts between are
 //! independent. Arcs become chords; the tolerance of a chord is what its arc leaves for certain, or

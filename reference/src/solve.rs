@@ -1,4 +1,4 @@
-//! Solves a convex program: the only file that names the solver.
+//! Solves a convex program with Clarabel, the only file that names the solver.
 //!
 //! Source: the interior-point method of Clarabel, one thread, no clock, so that the same rows give
 //! the same columns. Its verdict on infeasibility is never trusted near a boundary: a program of this

@@ -1,4 +1,4 @@
-//! From rest to rest along one straight leg, in closed form.
+//! Computes motion from rest to rest along one straight segment in closed form.
 //!
 //! Source: the seven-phase law of motion, three cases of equation set 2.2. It starts the search, is
 //! what the convex program is tested against, and what is left when that fails. Not here: corners.

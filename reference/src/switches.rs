@@ -1,4 +1,4 @@
-//! When a motion passes each corner: the times at which it changes legs.
+//! Finds the times at which a motion passes each corner.
 //!
 //! Source: the tolerance of a corner is the distance at which the motion passes it, so the closest
 //! approach is the change of legs, in path order. Only positions are asked for: whoever planned the

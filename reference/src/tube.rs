@@ -1,4 +1,4 @@
-//! The rows that keep a motion near its course.
+//! States the rows that keep a motion near its course.
 //!
 //! Source: every node belongs to a leg and lies within the tolerance of it (a capsule: one more unknown,
 //! the length along the leg); where legs meet, within the tolerance of the corner. For cubic

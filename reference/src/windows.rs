@@ -1,4 +1,4 @@
-//! A sample of a long program: windows of moves, evenly spread, in bounded memory.
+//! Samples a long program: windows of moves, evenly spread, in bounded memory.
 //!
 //! Source: the optimum of a whole program is out of reach, so some windows of it are scored, each as
 //! a program of its own, from rest to rest. A program that is short enough is one window. Not here:

@@ -1,5 +1,5 @@
-//! Kinematic corner smoothing: the axis velocities are blended around each corner inside the corner
-//! tolerance, without splines, and a look-ahead window shares short moves between the corners.
+//! Plans kinematic corner smoothing: blends the axis velocities around each corner inside the
+//! corner tolerance, and shares short moves between corners in a look-ahead window.
 //!
 //! [`KinematicSmoothing`] plans while a path streams in; [`plan`] does so for a whole toolpath. The
 //! corner motions [`Interrupted`] and [`Uninterrupted`] can be used by themselves. This crate does

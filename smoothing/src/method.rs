@@ -1,4 +1,4 @@
-//! Which corner motions a plan may use, and within what.
+//! Selects the corner motions that a plan may use, and holds the settings of the planner.
 //!
 //! Source: the comparison of section 2.4. Not here: the planning.
 

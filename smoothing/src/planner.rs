@@ -1,4 +1,4 @@
-//! Moves in, motion out: the stages of kinematic corner smoothing in a row.
+//! Runs the stages of kinematic corner smoothing, from moves to pieces.
 //!
 //! Source: chapter 3. Moves become straight vertices; stretches of fine moves may be travelled with
 //! superposed corners, everything else corner by corner. Not here: any formula.

@@ -1,4 +1,4 @@
-//! A straight stretch between two corners, after merging.
+//! Holds a straight segment between two corners, after merging.
 //!
 //! Source: the straight moves of section 3.3. Not here: how it comes about, see the merger.
 

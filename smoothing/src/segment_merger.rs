@@ -1,4 +1,4 @@
-//! Short moves merged into longer straight ones inside the tolerance, as they stream in.
+//! Merges short moves into longer straight segments inside the tolerance, as they stream in.
 //!
 //! Source: ours; section 3.3 of the dissertation takes short moves as they come. A straight line may
 //! replace a run of moves when every corner it leaves out lies within a share of the tolerance of it;

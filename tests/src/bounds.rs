@@ -1,4 +1,4 @@
-//! One name per asserted bound, with its reason.
+//! Names each asserted bound and its reason.
 //!
 //! Not here: limits and tolerances, which the judge holds the motion to.
 

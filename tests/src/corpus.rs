@@ -1,4 +1,4 @@
-//! Part programs made by others, where they are at hand.
+//! Finds part programs of other people where they are at hand.
 //!
 //! They are not part of this project and lie beside it; a test that needs one says so and passes
 //! when it is not there. Not here: reading them, which `program` does.

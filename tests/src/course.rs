@@ -1,5 +1,5 @@
-//! A path as it would be programmed, so that it can be mirrored, permuted and scaled before it
-//! becomes a toolpath.
+//! Represents a programmed path that can be mirrored, permuted and scaled before it becomes a
+//! toolpath.
 //!
 //! Not here: how it is drawn at random.
 

@@ -1,4 +1,4 @@
-//! A course planned as filtered pulses behind several chains, and each plan judged.
+//! Plans a course as filtered pulses behind several chains and judges each plan.
 //!
 //! Not here: the courses.
 

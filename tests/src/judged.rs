@@ -1,4 +1,4 @@
-//! A course planned in every way, and each plan judged.
+//! Plans a course by every method and judges each plan.
 //!
 //! Not here: the courses.
 

@@ -1,5 +1,5 @@
-//! What every planner must keep, whichever crate it lives in: random paths and limits to try it on,
-//! part programs to feed it, and the bounds that the tests assert.
+//! Provides random paths and limits, part programs and bounds for the properties that every planner
+//! must keep.
 //!
 //! The tests themselves stand in `tests/tests`, one property a file. Nothing depends on this crate.
 

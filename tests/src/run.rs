@@ -1,4 +1,4 @@
-//! Running a property over random cases, with a failure printed as Rust to paste into a test.
+//! Runs a property over random cases and prints a failure as Rust to paste into a test.
 //!
 //! Not here: any property.
 

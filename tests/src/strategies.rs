@@ -1,5 +1,5 @@
-//! Random courses and limits, with all that makes a planner stumble: reversals, repeats, turns of a
-//! millionth, moves of a nanometre, full circles, stops and changes of feedrate.
+//! Generates random courses and limits with reversals, repeats, tiny turns and moves, full circles,
+//! stops and changes of feedrate.
 //!
 //! Not here: what must hold for them.
 

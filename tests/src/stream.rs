@@ -1,4 +1,4 @@
-//! A planner and a judge side by side, as a controller would run them.
+//! Runs a planner and a judge side by side, as a controller would.
 //!
 //! Not here: what the report must say.
 

@@ -1,4 +1,4 @@
-//! What the judge found: peaks with their time and place, and what was broken.
+//! Reports findings: peaks with their time and place, and violations.
 //!
 //! Source: "did, with this result" is data, never an error. Not here: how it was found.
 

@@ -1,4 +1,4 @@
-//! What a motion can break.
+//! Defines the violations that a motion can have.
 //!
 //! Source: the house style of messages: place, quantity, value, bound. Not here: finding it.
 

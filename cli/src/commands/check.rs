@@ -1,4 +1,4 @@
-//! `toolglide check`: reads a program only, and shows everything that is wrong with it.
+//! Reads a program only, and shows every error and its place.
 //!
 //! Errors look as those of rustc: the line, and a caret under the word. Not here: the language.
 

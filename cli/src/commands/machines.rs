@@ -1,4 +1,4 @@
-//! Lists the machines there are and describes one.
+//! Lists the machines and describes one.
 
 use crate::error::CliError;
 use crate::input::args::MachinesArgs;

@@ -1,4 +1,4 @@
-//! Plans a program: set-points, summary, plot.
+//! Plans a program and writes set-points, summary and plot.
 //!
 //! Files are begun before anything is planned, so that what cannot be written is refused at once,
 //! and named when everything is done.

@@ -1,4 +1,4 @@
-//! Holds methods against the time-optimal motion.
+//! Scores methods against the time-optimal motion.
 //!
 //! The program is read once and sampled; every window is planned by every method and judged, and
 //! each section of it between stops has its optimum. Not here: what the optimum is.

@@ -1,4 +1,4 @@
-//! What the motions of several methods do to the modes of vibration of a machine.
+//! Shows the effect of several methods on the modes of vibration of a machine.
 //!
 //! Source: section 4.2.2. Every piece of a motion passes through an oscillator for each mode, and through
 //! one without damping for each frequency of the spectrum, so nothing is held but their states. Not

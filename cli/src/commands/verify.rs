@@ -1,4 +1,4 @@
-//! Judges set-points, whoever made them, against a program and the limits of a machine.
+//! Judges anyone's set-points against a program and the limits of a machine.
 //!
 //! The set-points are read twice: once to see whether they are sound and how finely they are
 //! written, and once to judge them. The program is read alongside, some thousand moves ahead, so

@@ -1,4 +1,4 @@
-//! What may be asked for on the command line.
+//! Defines the options of the command line.
 //!
 //! Not here: how values are read, and what a machine or a program makes of them.
 

@@ -1,4 +1,4 @@
-//! Which filters a run plans with.
+//! Chooses the filters of a run.
 //!
 //! Source: section 4.2.2. The command line goes before the machine file, time constants before modes;
 //! where none of them says anything, the planner chooses. Not here: the filters.

@@ -1,4 +1,4 @@
-//! The machine of a run, with what the command line changes about it.
+//! Builds the machine of a run, with the changes of the command line.
 //!
 //! Not here: what the machine does with a tool pose.
 

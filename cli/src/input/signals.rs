@@ -1,4 +1,4 @@
-//! Ends the process at the first signal, wherever it is at work, and leaves no half of a file behind.
+//! Ends the process at the first signal and leaves no half-written file behind.
 //!
 //! A thread waits for signals. It takes away the files that are not complete and ends the process, so
 //! that a solver, a read of a pipe and a loop of a program need not look for signals themselves.

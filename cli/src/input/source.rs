@@ -1,4 +1,4 @@
-//! Where a program is read from.
+//! Opens the program of a run: a file or standard input.
 
 use crate::error::CliError;
 use crate::output::progress::Watched;

@@ -1,4 +1,4 @@
-//! Whether a path stays where the axes can go, and the moves of a program on fewer axes.
+//! Checks a path against the travel of the axes, and reduces moves to the axes of the machine.
 //!
 //! Not here: the motion, which stays within the tolerance of its path.
 

@@ -1,4 +1,4 @@
-//! Values of the command line, checked one by one.
+//! Checks values of the command line one by one.
 //!
 //! Source: every quantity is positive and finite unless it is a coordinate. Not here: what may be
 //! asked for.

@@ -1,4 +1,4 @@
-//! Several methods side by side, for people and for programs.
+//! Prints several methods side by side, as a table or as JSON.
 //!
 //! Source: the judge's reports. Not here: planning.
 

@@ -1,4 +1,4 @@
-//! Set-points as CSV, written while the motion is planned.
+//! Writes set-points as CSV while the motion is planned.
 //!
 //! One row at every multiple of the period and one at the end, which is the programmed point
 //! exactly. Numbers are the shortest text that reads back to the same `f64`. One row is held back,

@@ -1,4 +1,4 @@
-//! How finely numbers are written.
+//! Formats numbers with a fixed number of decimals.
 //!
 //! Whoever writes three decimals leaves half of the third open; whoever writes all digits of an
 //! `f64` leaves nothing open.

@@ -1,4 +1,4 @@
-//! Files that exist only when they are complete.
+//! Writes files that appear under their names only when they are complete.
 //!
 //! A regular file is written beside its place and renamed when all is done, so that an error leaves
 //! nothing half-written and an older file untouched. Devices and pipes are written directly.

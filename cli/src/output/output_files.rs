@@ -1,4 +1,4 @@
-//! The files that a run writes: begun before anything is planned, named when all is done.
+//! Begins the files of a run before anything is planned and names them when all is done.
 
 use crate::error::CliError;
 use crate::input::args::{JobArgs, PlanArgs};

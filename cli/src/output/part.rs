@@ -1,4 +1,4 @@
-//! Files that are being written, under a name of their own beside their place.
+//! Writes files under a temporary name beside their place until they are complete.
 //!
 //! The name says for which file a part is, so that the next run for that file takes over what a killed run
 //! left behind. A lock tells the two cases apart: it goes with the process that holds it. Not here: which

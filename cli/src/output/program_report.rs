@@ -1,4 +1,4 @@
-//! What a program holds, for a machinist and for a program.
+//! Prints the content of a program, as text or as JSON.
 //!
 //! Not here: reading it.
 

@@ -1,4 +1,4 @@
-//! How far the reading of a program has come, for whoever watches a terminal.
+//! Shows the progress of reading a program on a terminal.
 //!
 //! The share is that of the bytes read. Nothing is shown where standard error is no terminal.
 

@@ -1,4 +1,4 @@
-//! What a command came to, told to people, to programs and to the shell.
+//! Reports the outcome of a command as text, as JSON and as an exit code.
 //!
 //! Not here: what is told.
 

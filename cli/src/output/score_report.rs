@@ -1,4 +1,4 @@
-//! How methods stand against the time-optimal motion, for people and for programs.
+//! Prints how methods stand against the time-optimal motion.
 //!
 //! Source: sums over what was scored. Not here: scoring.
 

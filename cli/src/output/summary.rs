@@ -1,4 +1,4 @@
-//! What came out, for a machinist and for a program.
+//! Prints the summary of a plan, as text or as JSON.
 //!
 //! Source: the judge's report. Not here: judging.
 

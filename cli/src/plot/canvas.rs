@@ -1,4 +1,4 @@
-//! SVG text, piece by piece.
+//! Writes SVG text, piece by piece.
 //!
 //! Not here: what is drawn. Coordinates are rounded to a hundredth of a pixel.
 

@@ -1,4 +1,4 @@
-//! A frame with two scales, the lines of its grid, and their labels.
+//! Draws a frame with two scales, grid lines and labels.
 //!
 //! Not here: curves.
 

@@ -1,4 +1,4 @@
-//! Colours, chosen to stay apart for eyes that do not see red and green alike.
+//! Chooses colours that stay apart for eyes that do not see red and green alike.
 
 /// Colours of the axes, in machine order.
 pub(crate) const AXES: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];

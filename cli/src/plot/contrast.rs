@@ -1,4 +1,5 @@
-//! The optimum and a planned motion: through the sharpest corner, and their feedrates over one another.
+//! Draws the optimum and a planned motion: the sharpest corner, and their feedrates over one
+//! another.
 //!
 //! Not here: finding either.
 

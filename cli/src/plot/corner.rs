@@ -1,4 +1,4 @@
-//! The sharpest corner of a program and the motion near it, found while both stream past.
+//! Finds the sharpest corner of a program and the motion near it while both stream past.
 //!
 //! A corner is known when its second move is read, before its motion is planned; so whoever leads
 //! gathers the pieces that follow until a sharper one has gathered its own. Not here: drawing.

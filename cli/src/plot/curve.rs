@@ -1,4 +1,4 @@
-//! One curve over time: a line, or an area where it swings faster than the chart can show.
+//! Draws one curve over time: a line, or an area where it swings faster than the chart can show.
 //!
 //! Not here: the frame around it.
 

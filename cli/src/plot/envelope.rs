@@ -1,5 +1,4 @@
-//! Curves of any length in fixed memory: the least and greatest value in each of some thousand
-//! equal stretches of time.
+//! Stores curves of any length in fixed memory: least and greatest value per interval of time.
 //!
 //! When the time runs out of stretches, neighbours are joined and the width doubles, so that a
 //! peak is never lost however long the motion is.

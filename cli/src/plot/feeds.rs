@@ -1,4 +1,4 @@
-//! The feedrates of several methods over one another against time, gathered in fixed memory.
+//! Draws the feedrates of several methods over one another, gathered in fixed memory.
 //!
 //! Not here: what the methods did otherwise.
 

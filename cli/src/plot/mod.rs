@@ -1,4 +1,4 @@
-//! A picture of a motion, gathered in fixed memory while the motion streams past.
+//! Draws a motion, gathered in fixed memory while it streams past.
 //!
 //! On the left the path, coloured by speed, and its sharpest corner; on the right feedrate,
 //! velocity, acceleration and jerk over time with their limits.

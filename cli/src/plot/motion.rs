@@ -1,4 +1,4 @@
-//! Feedrate, velocity, acceleration and jerk over time, with their limits.
+//! Draws feedrate, velocity, acceleration and jerk over time, with their limits.
 
 use super::canvas::{Canvas, Outline};
 use super::chart::{Chart, time_unit};

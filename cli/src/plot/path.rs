@@ -1,4 +1,4 @@
-//! The path of the motion, coloured by speed.
+//! Draws the path of the motion, coloured by speed.
 
 use super::canvas::{Anchor, Canvas, Outline};
 use super::chart::{Chart, SMALL};

@@ -1,4 +1,4 @@
-//! Whether a drawing is written as SVG or as PNG.
+//! Chooses between SVG and PNG by the name of a file.
 
 use super::render::png;
 use crate::error::CliError;

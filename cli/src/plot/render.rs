@@ -1,4 +1,4 @@
-//! A drawing as a picture of pixels, with letters that come along.
+//! Renders a drawing to pixels, with bundled fonts.
 //!
 //! A clean machine has no fonts, and one with fonts has its own; so the letters of a PNG are those
 //! of Noto Sans (SIL Open Font License) from within the program.

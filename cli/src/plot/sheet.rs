@@ -1,4 +1,4 @@
-//! Where the charts stand on the sheet, and what is written above them.
+//! Places the charts on the sheet, and the text above them.
 
 use super::canvas::{Anchor, Canvas};
 use super::{Plot, motion, path, zoom};

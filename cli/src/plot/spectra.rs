@@ -1,4 +1,4 @@
-//! Spectra of several motions over one another, one chart for each axis.
+//! Draws the spectra of several motions over one another, one chart per axis.
 //!
 //! Not here: how they are computed.
 

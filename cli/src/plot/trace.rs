@@ -1,4 +1,4 @@
-//! A path of any length in fixed memory: points farther apart than a spacing that grows.
+//! Stores a path of any length in fixed memory: points farther apart than a spacing that grows.
 //!
 //! The spacing is a share of the extent of the path, so that nothing larger than a fraction of a
 //! pixel is lost before the path has more points than a picture has room for.

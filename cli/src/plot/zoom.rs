@@ -1,4 +1,4 @@
-//! The sharpest corner, seen from near: the programmed path, the motion, and the tolerance.
+//! Draws the sharpest corner from near: programmed path, motion, tolerance.
 
 use super::canvas::{Anchor, Canvas, Outline, through};
 use super::chart::{Chart, NORMAL};

@@ -1,4 +1,4 @@
-//! A chain of moving averages: its time constants, its delay, and what it does to frequencies.
+//! Defines a chain of moving averages: time constants, delay, transfer function.
 //!
 //! Source: sections 4.2.1 and 4.2.2, equations 4.1, 4.2, 4.10 and 4.11. Not here: responses against
 //! time, see the kernel.

@@ -1,4 +1,4 @@
-//! A chain as motion of constant jerk between knots: its two longest filters exactly, the others as
+//! Represents a chain as motion of constant jerk between knots: two filters exactly, the others as
 //! a comb of delays.
 //!
 //! Source: section 4.2; two moving averages make a pulse piecewise constant in jerk. The comb is ours:

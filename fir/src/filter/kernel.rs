@@ -1,4 +1,4 @@
-//! What a chain of moving averages answers to a step of velocity, at any time, and its inverse.
+//! Evaluates the response of a chain to a step of velocity, at any time, and its inverse.
 //!
 //! Source: equations 4.3 to 4.7, replaced by one formula for any number of filters and every order
 //! of durations: the sum over all subsets of the filters of truncated powers. Not here: moves.

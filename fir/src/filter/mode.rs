@@ -1,4 +1,4 @@
-//! Modes of vibration: what is left of them behind a chain, and which chain silences them.
+//! Describes modes of vibration: the residual behind a chain, and the chain that silences them.
 //!
 //! Source: section 4.2.2, equations 4.10 to 4.12; the damped residual is ours. Not here: simulation.
 

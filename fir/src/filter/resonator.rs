@@ -1,4 +1,4 @@
-//! A mode of vibration under a motion: what the pieces of the motion leave of it, exactly.
+//! Integrates a mode of vibration under the pieces of a motion exactly.
 //!
 //! Source: the oscillator `x'' + 2 d w x' + w² x = -a` of section 4.2.2, whose answer to a stretch of
 //! acceleration that changes linearly is closed. Without damping its amplitude is that of the spectrum

@@ -1,4 +1,4 @@
-//! The jerk behind a chain: commanded velocities at a few delays, each with a weight.
+//! Computes the jerk behind a chain from commanded velocities at a few delays.
 //!
 //! Source: equations 4.1 to 4.7; the third derivative of two moving averages is four impulses, and a comb
 //! repeats them. Not here: what the jerk is integrated to.

@@ -1,4 +1,4 @@
-//! Filtered pulses of lines and arcs in closed form, at any time.
+//! Evaluates filtered pulses of lines and arcs in closed form, at any time.
 //!
 //! Source: equations 4.13 to 4.15 with transients, for any sequence of pulses. Shares nothing with
 //! the pieces of a plan but the responses of the chain, so each checks the other. Not here: when

@@ -1,4 +1,4 @@
-//! How fast an arc may be followed behind a chain.
+//! Computes the largest feedrate of an arc behind a chain.
 //!
 //! Source: section 4.2.3 for the radius behind the filters; centripetal acceleration and the bound in
 //! the middle of an arc are ours. Not here: the exact root, see the circle, nor where chords end.

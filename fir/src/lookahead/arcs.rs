@@ -1,4 +1,4 @@
-//! The arcs that pulses are part of, and how fast each may be followed behind the chain in use.
+//! Keeps the arcs that pulses belong to, each with its largest feedrate.
 //!
 //! Source: none; many pulses share one arc. Not here: how that is found, see the bend.
 

@@ -1,5 +1,5 @@
-//! How far a filtered motion can be from its path, whatever pulses, dwells and corners are in the
-//! window of the filters.
+//! Bounds the deviation of a filtered motion from its path, for any pulses, dwells and corners
+//! inside the filters.
 //!
 //! Source: ours; equations 4.24 to 4.26 know one corner alone and break their own tolerance where
 //! corners are dense. The filtered position is a mean of commanded ones, so it lies near the point

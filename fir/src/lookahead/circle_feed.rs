@@ -1,4 +1,4 @@
-//! How fast a circle may be followed: a mean of points on a circle lies inside it.
+//! Computes the largest feedrate of a circle: the mean of points on a circle lies inside it.
 //!
 //! Source: section 4.2.3, equations 4.15 to 4.20. The printed quartic always errs to the unsafe side
 //! and has no root for large tolerances; the exact root is found instead. Not here: centripetal

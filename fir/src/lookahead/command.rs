@@ -1,4 +1,4 @@
-//! What the look-ahead tells the sweep.
+//! Defines the commands from the look-ahead to the sweep.
 //!
 //! Source: none. Not here: who decides it, and what becomes of it.
 

@@ -1,4 +1,4 @@
-//! How far the bound may go at a corner, so that the motion is within the tolerance of lines and arcs.
+//! Computes how far the deviation bound may go at a corner of lines and arcs.
 //!
 //! Source: ours. The bound holds for the polygon of lines and chords. The vertices of chords lie outside
 //! their arc and the middles of chords inside. Between two vertices the bound is convex, and below the

@@ -1,4 +1,4 @@
-//! How corners are taken: at speed, slowly enough, or with a dwell.
+//! Chooses how each corner is taken: at speed, slower, or with a dwell.
 //!
 //! Source: section 4.3 for the dwell, whose formula is replaced by one that holds for unequal
 //! feedrates; the choice is ours and is not proved: the correction makes it safe. Not here: the bound.

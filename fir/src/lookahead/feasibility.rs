@@ -1,4 +1,4 @@
-//! Whether a plan keeps in step: the last word on it, with the times that it will have.
+//! Checks a plan with its final times against limits and feedrates.
 //!
 //! Source: ours. Shares nothing with the search of feedrates but the bound on the change of velocity.
 //! Not here: what is done where it is broken.

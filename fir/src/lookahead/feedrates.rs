@@ -1,4 +1,4 @@
-//! Each move is followed no faster than its own feedrate asks, also while the filters see others with it.
+//! Limits each move to its own feedrate while the filters see other moves with it.
 //!
 //! Source: ours; the overlap of section 4.3 lets a feedrate that falls do so half before the corner and half
 //! behind it. While the mean of the window is on a move, all that is in the window must be as slow as that

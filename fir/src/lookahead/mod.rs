@@ -1,5 +1,5 @@
-//! Decides when pulses begin and how fast they are, so that the motion keeps its tolerance: a dwell at
-//! sharp corners, a lower feedrate where corners are dense.
+//! Decides when pulses begin and how fast they are: a dwell at sharp corners, a lower feedrate
+//! where corners are dense.
 //!
 //! Corners are sorted, feedrates are brought in step with each other, and what breaks the bound is
 //! corrected. What is known always ends at rest, so that there is a plan to carry out when no other one

@@ -1,5 +1,4 @@
-//! A queue whose items stay where they were just read: a ring would lead through all of its memory, which no
-//! cache holds.
+//! Queues items in memory that stays where it was just read.
 //!
 //! Source: none. Not here: what waits.
 

@@ -1,5 +1,5 @@
-//! Feedrates rise and fall in steps, so that no axis changes its velocity by more than the chain allows
-//! within its longest filter; behind that filter the steps are a ramp.
+//! Raises and lowers feedrates in steps, so that each axis changes its velocity by no more than the
+//! chain allows within its longest filter.
 //!
 //! Source: ours; section 4.2 starts every block from rest, so that a chain must be as long as its
 //! feedrate asks. A feedrate that falls never increases the bound of the deviation: it is as good as many

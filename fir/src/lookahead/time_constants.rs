@@ -1,4 +1,4 @@
-//! Which time constants are used: those with which what waits takes the least time.
+//! Chooses the filter time constants that minimise the duration of the queued moves.
 //!
 //! Source: section 4.2.2 designs a chain for a feedrate. A shorter chain allows less feedrate, but cuts
 //! corners and curves less, and dwells less; which feedrate to design for depends on the path, so several

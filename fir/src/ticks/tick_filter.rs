@@ -1,4 +1,4 @@
-//! Tick by tick: moving sums of integers, for a controller with little time and memory to spare.
+//! Filters commanded positions by moving sums of integers, tick by tick.
 //!
 //! Source: equation 4.35, on commanded positions instead of velocities and in integers, so that
 //! nothing drifts: a sum gains what enters and loses what leaves, exactly, and is divided once, at the

@@ -1,4 +1,4 @@
-//! A straight move as commanded positions in integers, tick by tick.
+//! Commands a straight move as positions in integers, tick by tick.
 //!
 //! Source: equation 4.35 takes pulses of whole ticks; the feedrate is lowered for it, never the length.
 //! Not here: the filters.

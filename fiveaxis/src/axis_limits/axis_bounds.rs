@@ -1,4 +1,5 @@
-//! What the axes of a machine do behind a piece of tool motion, bounded at every instant.
+//! Bounds velocity, acceleration and jerk of the axes behind a piece of tool motion at every
+//! instant.
 //!
 //! Source: ours. The inverse kinematics along the polynomials of the piece is interpolated, and
 //! the series bounds the derivatives between the instants, too; what the series leaves out is

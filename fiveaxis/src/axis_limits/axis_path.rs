@@ -1,4 +1,4 @@
-//! The way of the axes along a block.
+//! Computes the path of the axes along a block as polynomials.
 //!
 //! Source: ours. Inverse kinematics at some stations of a block, and the polynomials through them. They
 //! bound how fast a block can be at best, and what its axes do while it is timed. Not here: more than

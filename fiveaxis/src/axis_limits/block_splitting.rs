@@ -1,4 +1,4 @@
-//! A block is cut where a part of it must be much slower than the rest.
+//! Splits a block where one part of it must be much slower than the rest.
 //!
 //! Source: ours. Beside a pole an axis turns half around while the tool turns by a few thousandths; without a
 //! cut the whole block would be as slow. Not here: how slow, see `relax`.

@@ -1,4 +1,4 @@
-//! Polynomials through a few values, as series of Chebyshev, and what bounds their derivatives.
+//! Interpolates polynomials in Chebyshev series and bounds their derivatives.
 //!
 //! Source: interpolation at the zeros, or at the extrema, of a polynomial of Chebyshev. No polynomial
 //! of the series exceeds 1 between -1 and 1, so that the sum of the magnitudes of the coefficients

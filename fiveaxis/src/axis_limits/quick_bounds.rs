@@ -1,4 +1,4 @@
-//! What the axes do while one or two blocks are under way, bounded by their ways alone.
+//! Bounds the axes while one or two blocks are under way, from their axis paths alone.
 //!
 //! Source: the chain rule. The position of an axis is that at the corner, what each block adds to
 //! it, and what they add together, which is of second order. Each is bounded over the whole interval, so

@@ -1,4 +1,4 @@
-//! What of a stretch must be measured again after some of its blocks have changed.
+//! Finds the part of a section that must be measured again after some of its blocks changed.
 //!
 //! Source: ours. A block that is slowed down shifts everything after it, which moves as before. Not here: the
 //! measures, and what is done about them.

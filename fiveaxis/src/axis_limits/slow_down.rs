@@ -1,4 +1,4 @@
-//! Blocks are slowed down, and corners taken more gently, until every axis keeps its limits.
+//! Slows blocks down and eases corners until every axis keeps its limits.
 //!
 //! Source: ours. Each block alone is bounded by how the axes move along it; then the motion of the
 //! whole stretch is laid out, measured, and where a limit is exceeded the blocks are slowed down or

@@ -1,4 +1,4 @@
-//! Pieces of tool motion from steps of blocks.
+//! Builds pieces of tool motion from the commanded progress of blocks.
 //!
 //! Source: filtered velocity pulses integrate to a filtered position (section 5.2). The orientation
 //! is the product of the turns of the blocks that are under way, the oldest first, each by its own

@@ -1,4 +1,4 @@
-//! Ticks through pose motion: tool pose and axis positions at exact instants.
+//! Samples pose motion: tool pose and axis positions at exact instants.
 //!
 //! Source: tick `k` stands at `k` times the period. Not here: planning.
 

@@ -1,4 +1,4 @@
-//! Stretches in which every axis goes for itself.
+//! Plans sections in which every axis moves straight by itself.
 //!
 //! Source: section 5.4 for NS-JCB; moves in words of axes. Not here: straight motion itself, see `joint`.
 

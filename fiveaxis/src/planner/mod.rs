@@ -1,4 +1,4 @@
-//! From legs of poses to pieces of motion, a stretch between two rests at a time.
+//! Plans legs of poses into pieces of motion, one section between two rests at a time.
 //!
 //! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
 

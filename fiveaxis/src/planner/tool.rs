@@ -1,4 +1,4 @@
-//! Stretches of tool motion, and turns in place between them.
+//! Plans sections of tool motion, with turns in place between them.
 //!
 //! Source: sections 5.2 and 5.3. Not here: the formulas of corners, timing and limits.
 

@@ -1,4 +1,4 @@
-//! One duration for tip and tool.
+//! Gives tool tip and tool orientation of a move one duration.
 //!
 //! Source: section 5.2, equations 5.6 to 5.9: tip and orientation share the duration of the slower
 //! one; inverse-time feed gives the duration itself. Not here: corners.

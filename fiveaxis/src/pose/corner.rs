@@ -1,4 +1,4 @@
-//! A corner of poses: how far both moves may be from it at once.
+//! Computes the blend time at a corner of poses inside both tolerances.
 //!
 //! Source: sections 5.3.1 and 5.3.2. At a corner the motion lacks `b` of the move before and has `a`
 //! of the move after. On the tip that is a distance |a t2 - b t1|, and on the sphere equation 5.27,

@@ -1,4 +1,4 @@
-//! Straight motion of axes through the same filters: NS-JCB, and moves of axes by themselves.
+//! Filters straight motion of the axes: NS-JCB, and moves of axes by themselves.
 //!
 //! Source: section 5.4, where joint-space interpolation is the usual way to compare with: inverse
 //! kinematics at the poses and at way-points between them, then every axis for itself. Where the

@@ -1,4 +1,4 @@
-//! What the words of a pose move mean on a machine.
+//! Resolves the words of a pose move into a leg on a machine.
 //!
 //! Source: tool-tip mode gives the tip in workpiece coordinates and the tool by rotary words, which
 //! forward kinematics turns into an orientation; plain mode gives positions of axes. Not here:

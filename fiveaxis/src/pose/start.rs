@@ -1,4 +1,4 @@
-//! Where the axes of a machine stand at the first pose of a program.
+//! Chooses branch and turns of the axes at the first pose of a program.
 //!
 //! Source: ours. A pose can be taken in several branches and on several turns of an axis; once the motion
 //! has begun it can only go on in its own. So the moves ahead are followed from each, the

@@ -1,4 +1,4 @@
-//! A stretch of tool motion between two rests, as it is slowed down within the limits of the axes.
+//! Holds a section of tool motion between two rests while it is slowed down to the axis limits.
 //!
 //! Source: ours. Not here: how much, see `relax`; the formulas of corners and timing.
 

@@ -1,4 +1,4 @@
-//! Overlaps of short blocks: corners that are passed at the same time add up.
+//! Adds up the deviations of corners that short blocks pass at the same time.
 //!
 //! Source: ours. With `E` the filtered length of path, the motion is no farther from the point of the
 //! path at `E` than the sum over all corners of `turn * min(A, B)`, where `A` is what is done beyond

@@ -1,4 +1,4 @@
-//! The commanded progress of a block as steps of its rate, and what the filters make of it.
+//! Evaluates the commanded progress of a block behind the filters.
 //!
 //! Source: equations 5.3 and 5.17, as sums of step responses instead of case tables. Not here: when
 //! the steps are, see `timing`.

@@ -1,4 +1,4 @@
-//! When every block of a stretch begins, for each method.
+//! Schedules when every block of a section begins, for each method.
 //!
 //! Source: sections 5.3.1 and 5.3.2. A stretch is what is planned between two rests. Not here: more
 //! than two blocks at once, see `accumulate`.

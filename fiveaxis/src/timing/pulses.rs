@@ -1,4 +1,4 @@
-//! Many pulses at once, and the bound of their deviation at every corner.
+//! Bounds the deviation of many overlapping pulses at every corner.
 //!
 //! Source: ours, as `accumulate` says. Not here: what is done about a sum above its tolerance.
 

@@ -1,4 +1,4 @@
-//! The shortest way between two tool orientations: an arc of a great circle.
+//! Interpolates between two tool orientations along a great circle.
 //!
 //! Source: section 5.2, equations 5.6 to 5.12, with the angle by an inverse tangent of two arguments
 //! instead of an inverse cosine, and the motion as a rotation instead of a weighted sum, so that

@@ -1,5 +1,5 @@
-//! A pose move once its start is known: a line of the tool tip and a turn of the tool, or a straight
-//! move of all axes.
+//! Represents a pose move with a known start: a line of the tool tip and a turn of the tool, or a
+//! straight move of all axes.
 //!
 //! Source: section 5.2. Not here: words of programs, see [`PoseMove`](crate::PoseMove), and time.
 

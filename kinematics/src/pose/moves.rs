@@ -1,4 +1,4 @@
-//! A move of tool tip and tool orientation together, as a program asks for it.
+//! Represents a move of tool tip and tool orientation as a program asks for it.
 //!
 //! Source: section 5.2, where a block leads from one pair (P, O) to the next; inverse-time feed and
 //! axis words as programs of five axes write them. Not here: what the words mean on a machine.

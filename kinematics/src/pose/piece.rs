@@ -1,4 +1,4 @@
-//! A stretch of motion of tool or axes between two knots.
+//! Represents motion of tool or axes between two knots.
 //!
 //! Source: section 5.2. Two moving averages make every angle and every coordinate a polynomial of
 //! the third degree between knots; the orientation is a product of rotations, so that it has unit

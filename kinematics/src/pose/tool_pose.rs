@@ -1,4 +1,4 @@
-//! The tool in the workpiece: where its tip is and which way it points.
+//! Represents the tool in the workpiece: its tip and its orientation.
 //!
 //! Source: section 5.2, where a pose is a pair (P, O). Not here: interpolation of poses.
 

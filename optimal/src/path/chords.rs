@@ -1,4 +1,4 @@
-//! Arcs as chords, one at a time.
+//! Divides arcs into chords, one at a time.
 //!
 //! Source: ours. Between two points of an arc the chord lies off by at most an eighth of the square
 //! of the angle times the radius, which bounds a helix and slightly unequal radii alike. Not here:

@@ -1,4 +1,4 @@
-//! Short moves joined into runs, each with a tube of its own, as they stream in.
+//! Merges short moves into segments, each with a tube of its own, as they stream in.
 //!
 //! Source: ours. A run is a straight line between two vertices of the path. Every vertex that it leaves
 //! out lies within `deviation` of it, and none lies behind another by more than is counted into

@@ -1,4 +1,4 @@
-//! Runs cut into what one window can hold, and how finely their time is cut.
+//! Cuts segments into spans that fit one window, and chooses how finely their time is cut.
 //!
 //! Source: ours. The jerk is constant over an interval, so that intervals must be short against the
 //! time in which the acceleration is built up; where speed is constant they may be long. The middle of a

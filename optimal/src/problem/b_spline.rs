@@ -1,4 +1,4 @@
-//! Motion of constant jerk per interval as a cubic B-spline.
+//! Represents motion of constant jerk per interval as a cubic B-spline.
 //!
 //! At node `k` the motion depends on three coefficients; the next interval brings one more and
 //! forgets one. Position, velocity and acceleration at a node follow from its coefficients and the

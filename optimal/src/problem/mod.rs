@@ -1,4 +1,4 @@
-//! A window as rows of an interior-point method: which point of the motion keeps what.
+//! States a window as constraints of the interior-point method.
 //!
 //! An interval of constant jerk has the Bezier points `v + h a / 2` of velocity (between the
 //! velocities of its nodes) and `p + h v / 3`, `p⁺ - h v⁺ / 3` of position. Node velocities lie

@@ -1,4 +1,4 @@
-//! What one segment of a window asks of the motion along it.
+//! States the constraints of one segment of a window.
 //!
 //! Source: as [`problem`](super). Not here: which point of the motion keeps it.
 

@@ -1,4 +1,4 @@
-//! The durations of a window's segments, found by a sequence of convex problems.
+//! Finds the durations of a window by sequential convex programming in a trust region.
 //!
 //! With the durations fixed, the motion through a window is a convex problem; with them free it is
 //! linearised where the last one ended, shortened within a trust region, and linearised again. The

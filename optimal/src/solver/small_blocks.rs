@@ -1,4 +1,4 @@
-//! Products of blocks as small as the number of axes, written out: general ones call for every column.
+//! Multiplies blocks as small as the number of axes.
 //!
 //! Not here: what the blocks are, see [`front`](crate::solver::riccati).
 

@@ -1,4 +1,4 @@
-//! How fast each place of a window may be passed, and how long each span then takes.
+//! Estimates the speed at each place of a window and the duration of each span.
 //!
 //! Source: ours. A corner is passed as on the circle that fits its tube, forward and backward passes
 //! limit how speed changes between corners, and a span takes as long as a trapezoid of speed. It is a

@@ -1,4 +1,4 @@
-//! A window of straight pieces, the motion through it, and the seam to whoever finds that motion.
+//! Defines a window of straight segments, the motion through it, and the seam to its solver.
 //!
 //! Source: the receding horizon over which time optimality is sought; the motion is one of constant
 //! jerk per interval, as in section 2.2. Not here: how windows follow one another, and any solver.

@@ -1,4 +1,4 @@
-//! What comes out of a planner: motion, and what is known of it in between.
+//! Defines the output of a planner: pieces, and the places between which it may be exchanged.
 //!
 //! Source: ours. Not here: who makes it, and who needs it.
 

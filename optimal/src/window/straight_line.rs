@@ -1,4 +1,4 @@
-//! Along a straight line in closed form: the motion that is always there.
+//! Plans motion along a straight line in closed form, the fallback that always exists.
 //!
 //! Source: the seven phases of section 3.3.1. Where no window can be solved, the next straight line is
 //! travelled to a stop; and the middle of a long move is travelled in this way. Not here: when that is.

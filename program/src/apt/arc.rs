@@ -1,4 +1,4 @@
-//! Arcs of cutter location files.
+//! Builds arcs of cutter location files.
 //!
 //! Source: `CIRCLE/x,y,z,i,j,k,r`, behind which NX writes four numbers more, and the `GOTO` where the arc ends: counter-clockwise about its axis, as
 //! chords within a share of the tolerance. Not here: other statements.

@@ -1,4 +1,4 @@
-//! Takes coordinate systems and feedrates of cutter location files into the state of their reader.
+//! Applies coordinate systems and feedrates of cutter location files.
 //!
 //! Source: `MSYS` of NX, which names origin, X axis and Y axis of the system in which the points behind it are
 //! written; `FEDRAT` and `SPINDL` of ISO 4343. A system moves the part, so that all points and directions are taken to

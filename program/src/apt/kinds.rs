@@ -1,4 +1,4 @@
-//! Sorts statements of cutter location files that are not read into silent ones, noted ones and refused ones.
+//! Sorts statements of cutter location files that are not read: silent, noted, refused.
 //!
 //! Source: ISO 4343 (APT) and the files that NX, Creo, CATIA and others write. Not here: statements that are read.
 

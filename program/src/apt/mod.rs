@@ -1,4 +1,4 @@
-//! Cutter location files: tool poses by GOTO, circles, feedrates.
+//! Reads cutter location files (APT): tool poses by GOTO, circles, feedrates.
 //!
 //! Source: ISO 4343 (APT) as CAM systems write it. The tool tip is in mm or inch by `UNITS`; `RAPID`
 //! holds for one move; `CIRCLE` names centre, axis and radius of the arc that the next `GOTO` ends,

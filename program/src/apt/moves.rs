@@ -1,4 +1,4 @@
-//! Moves of cutter location files: to a point with or without an orientation.
+//! Builds moves of cutter location files, with or without an orientation.
 //!
 //! Source: `GOTO`, `GODLTA`, `FROM`, `RAPID`. Not here: arcs, see `cl_arc`.
 

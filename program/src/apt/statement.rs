@@ -1,4 +1,4 @@
-//! One statement of a cutter location file: a major word, and what stands behind its slash.
+//! Parses one statement of a cutter location file.
 //!
 //! Source: ISO 4343 and the files that CAM systems write: `MAJOR/minor,number,...`, `$$` begins a
 //! remark, `$` at the end of a line goes on in the next one. Not here: what a statement does.

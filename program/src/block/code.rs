@@ -1,4 +1,4 @@
-//! A code such as `G1` or `G91.1`.
+//! Represents a code such as `G1` or `G91.1`.
 //!
 //! Not here: what it means.
 

@@ -1,4 +1,4 @@
-//! What each `G` and `M` code means, and what is known of those that are not read.
+//! Lists the meaning of each `G` and `M` code, and the reason of each that is not read.
 //!
 //! Source: RS274/NGC, the manual of LinuxCNC, and `G6.2` and `M98` of FANUC. Not here: what a meaning does.
 

@@ -1,4 +1,4 @@
-//! Codes of the language, what they can mean, and which exclude each other.
+//! Defines the meanings of codes, and which exclude each other.
 //!
 //! Source: the modal groups of RS274/NGC. Not here: which code means what.
 

@@ -1,4 +1,4 @@
-//! One line of words as a block: what each code means, and no two that exclude each other.
+//! Turns one line of words into a block, with no two codes that exclude each other.
 //!
 //! Source: the modal groups of RS274/NGC. Not here: the modal state, and which words a code needs.
 

@@ -1,4 +1,4 @@
-//! Codes of a block by their modal groups: no two that exclude each other.
+//! Sorts the codes of a block by their modal groups.
 //!
 //! Source: the modal groups of RS274/NGC. Not here: which code means what, and what a meaning does.
 

@@ -1,4 +1,4 @@
-//! Every word of a block must be used by one code of it, and by no two.
+//! Checks that every word of a block is used by exactly one code.
 //!
 //! Source: RS274/NGC, where a word without a use is an error. Not here: what the words say.
 

@@ -1,4 +1,4 @@
-//! Cutter compensation: the tool goes beside the path, at the distance of its radius.
+//! Compensates for the cutter: the tool moves beside the path, at the distance of its radius.
 //!
 //! Source: `G40` to `G42.1` of LinuxCNC. Around an outside corner goes an arc; in an inside corner both
 //! moves end where their offsets meet. A move waits until the next one is known. The first move leads

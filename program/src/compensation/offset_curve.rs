@@ -1,4 +1,4 @@
-//! Lines and arcs in a plane at a distance from the path, and where two of them meet.
+//! Offsets lines and arcs in a plane, and intersects them.
 //!
 //! Source: plane geometry. Not here: what happens at a corner, see `compensation`.
 

@@ -1,4 +1,4 @@
-//! Moves of a tool beside its path, between the plane of compensation and the machine.
+//! Moves a tool beside its path, between the plane of compensation and the machine.
 //!
 //! Not here: which moves, see `compensation`.
 

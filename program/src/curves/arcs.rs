@@ -1,4 +1,4 @@
-//! Arcs as they are written: by centre or by radius, in one of three planes.
+//! Builds arcs as they are written: by centre or by radius, in one of three planes.
 //!
 //! Source: `G2` and `G3` of RS274/NGC. Not here: the geometry of the arc itself.
 

@@ -1,4 +1,4 @@
-//! Bezier curves: flattened into chords, and cut out of splines.
+//! Flattens Bezier curves into chords, and cuts them out of splines.
 //!
 //! Source: de Casteljau's halving, Boehm's insertion of knots. A curve with positive weights lies within
 //! its control points, so that chords near all of them are near the curve. Not here: which curves a

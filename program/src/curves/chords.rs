@@ -1,4 +1,4 @@
-//! Arcs of pose programs as chords.
+//! Divides arcs of pose programs into chords.
 //!
 //! Source: the sagitta of a chord, r (1 - cos(φ/2)). Not here: arcs of plain programs, which stay arcs.
 

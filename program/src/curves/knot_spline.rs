@@ -1,4 +1,4 @@
-//! Rational splines whose program gives each knot: `G6.2`.
+//! Evaluates rational splines whose program gives each knot: `G6.2`.
 //!
 //! Source: NURBS interpolation of FANUC and Mitsubishi controls: `G6.2 P K X Y Z R`, then a block for each
 //! control point with its knot `K` and its weight `R`, then as many blocks with a knot alone as the order

@@ -1,4 +1,4 @@
-//! Splines as chords: quadratic and cubic ones in the plane XY, rational ones in that of the arcs.
+//! Divides quadratic, cubic and rational splines of the plane XY into chords.
 //!
 //! Source: `G5`, `G5.1` and `G5.2` `G5.3` of LinuxCNC. A Bezier curve lies within its control points;
 //! it is halved until they are within a share of the tolerance of a chord, and the moves keep the rest

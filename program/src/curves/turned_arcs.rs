@@ -1,4 +1,4 @@
-//! Arcs in planes that are none of the machine, as chords.
+//! Divides arcs in planes that are none of the machine into chords.
 //!
 //! Not here: arcs in its planes, see `arcs`.
 

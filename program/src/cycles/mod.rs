@@ -1,4 +1,4 @@
-//! Canned cycles: drilling, tapping and boring.
+//! Expands canned cycles: drilling, tapping and boring.
 //!
 //! Source: `G73`, `G74` and `G81` to `G89` of RS274/NGC and LinuxCNC. The words of a cycle hold until
 //! another motion code; `L` for its block only. Every move of a cycle ends in rest, because a hole has

@@ -1,4 +1,4 @@
-//! The words of canned cycles, which hold from block to block.
+//! Keeps the words of canned cycles, which hold from block to block.
 //!
 //! Source: RS274/NGC and LinuxCNC: they hold until another motion code. Not here: the motion.
 

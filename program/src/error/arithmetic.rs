@@ -1,4 +1,4 @@
-//! What can be wrong with a parameter or an expression.
+//! Names every fault of a parameter or an expression.
 //!
 //! Not here: words and codes, see [`Reason`](crate::Reason).
 

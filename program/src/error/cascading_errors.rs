@@ -1,4 +1,4 @@
-//! Which refusals may be mere consequences of one before them.
+//! Recognises refusals that may be mere consequences of one before them.
 //!
 //! A line that is refused does not do what it says: it sets no feedrate, no motion mode and no name, it
 //! opens no block, and the tool does not get to its end. Not here: the refusals.

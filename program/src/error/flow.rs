@@ -1,4 +1,4 @@
-//! What can be wrong with subroutines, loops and conditions.
+//! Names every fault of subroutines, loops and conditions.
 //!
 //! Not here: words and codes, see [`Reason`](crate::Reason).
 

@@ -1,4 +1,4 @@
-//! What can be wrong with offsets, tools, cycles, splines and cutter compensation.
+//! Names every fault of offsets, tools, cycles, splines and cutter compensation.
 //!
 //! Lengths are in mm. Not here: words and codes, see [`Reason`](crate::Reason).
 

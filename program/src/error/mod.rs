@@ -1,4 +1,4 @@
-//! A refusal or a warning with its place.
+//! Carries a refusal or a warning with its place.
 //!
 //! Not here: what can be wrong, see [`Reason`].
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a program.
+//! Names every fault of a program.
 //!
 //! Lengths are in mm and feedrates in mm/s where they are named so, since a refusal about geometry
 //! comes after the conversion of units; anything else is as written.

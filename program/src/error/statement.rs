@@ -1,4 +1,4 @@
-//! What can be wrong with a statement of a cutter location file.
+//! Names every fault of a statement in a cutter location file.
 //!
 //! Not here: words and codes, see [`Reason`](crate::Reason).
 

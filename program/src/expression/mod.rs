@@ -1,4 +1,4 @@
-//! Values of a program: numbers, parameters, functions and expressions in brackets.
+//! Evaluates numbers, parameters, functions and expressions in brackets.
 //!
 //! Source: RS274/NGC, sections on real values, expressions, operators and functions. Angles are in
 //! degrees. A truth is 1, a falsehood 0. Not here: where the values of parameters come from.

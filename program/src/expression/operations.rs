@@ -1,4 +1,4 @@
-//! Operators and functions of expressions.
+//! Implements the operators and functions of expressions.
 //!
 //! Source: RS274/NGC and the manual of LinuxCNC; angles are in degrees. Not here: how they bind.
 

@@ -1,4 +1,4 @@
-//! Parameters of a program: numbered ones, and names, local to a subroutine or global.
+//! Stores parameters: numbered ones, and names, local to a subroutine or global.
 //!
 //! Source: RS274/NGC and the manual of LinuxCNC: `#1` to `#30` and names are local to a subroutine,
 //! names that begin with `_` are global. Not here: parameters that tell the state of the machine,

@@ -1,4 +1,4 @@
-//! The parameters that tell the state of the reader, and those that set it.
+//! Maps the state of the reader to parameters, both ways.
 //!
 //! Source: the numbered and the predefined named parameters of LinuxCNC, lengths in the units of the
 //! program. Not here: parameters that a program makes up.

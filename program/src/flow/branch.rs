@@ -1,4 +1,4 @@
-//! What O words do: conditions, loops, subroutines.
+//! Executes O words: conditions, loops, subroutines.
 //!
 //! Source: the chapter on O codes of the manual of LinuxCNC. A subroutine stands above its calls, in a file
 //! of its name, or further below, in this order. Not here: how lines are read and remembered.

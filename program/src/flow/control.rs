@@ -1,4 +1,4 @@
-//! Lines that begin with an O word: what they say, before anything is done about it.
+//! Parses lines that begin with an O word.
 //!
 //! Source: the chapter on O codes of the manual of LinuxCNC. Not here: carrying it out.
 

@@ -1,4 +1,4 @@
-//! Subroutines in lines that go by without being run: those of another file, or of the rest of this one.
+//! Records subroutines from lines that go by without being run.
 //!
 //! Not here: the calls.
 

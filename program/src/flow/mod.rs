@@ -1,4 +1,4 @@
-//! Which line comes next: the file, or lines of it that are run again.
+//! Chooses the next line: from the file, or from lines that are run again.
 //!
 //! The file itself is read once and never held; only loops and subroutines are remembered. Not
 //! here: what an O word does, see `branch`.

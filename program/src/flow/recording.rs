@@ -1,4 +1,4 @@
-//! Lines that are run more than once: loops and subroutines.
+//! Records lines that are run more than once: loops and subroutines.
 //!
 //! Not here: which lines these are.
 

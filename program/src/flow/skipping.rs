@@ -1,4 +1,4 @@
-//! Lines that are passed over, or remembered, up to the end of their block.
+//! Skips or remembers lines up to the end of their block.
 //!
 //! Not here: what comes next, see `flow`.
 

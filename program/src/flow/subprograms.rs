@@ -1,4 +1,4 @@
-//! Subprograms with a number: `M98 P L` calls one that stands below in the file, `M99` ends it.
+//! Calls numbered subprograms: `M98 P L` calls one that stands below in the file, `M99` ends it.
 //!
 //! Source: FANUC controls, and the manual of LinuxCNC, which numbers them by `O` words too. With the first
 //! call the rest of the file is remembered, because that is where they stand. Parameters are those of the

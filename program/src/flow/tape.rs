@@ -1,4 +1,4 @@
-//! The lines of a program that may jump: all that were read, and where it is in them.
+//! Keeps the lines of a program that may jump.
 //!
 //! Lines are read from the file as they are needed and kept, 16 MiB of them; of a longer program the
 //! first are forgotten, and cannot be jumped to. Not here: who jumps where.

@@ -1,4 +1,4 @@
-//! How fast a move is, and how long nothing moves.
+//! Computes the feedrate of a move and the length of a dwell.
 //!
 //! Source: `F` with `G93` `G94`, and `G4` of RS274/NGC. Not here: units, see `units`.
 

@@ -1,4 +1,4 @@
-//! A coordinate system that a program shifts and turns as it likes.
+//! Shifts and turns a coordinate system as a program asks.
 //!
 //! Source: programmable frames of Sinumerik: each shift and each turn is in the system that those
 //! before it made; mirror, scaling and rotation of FANUC. Not here: the words that ask for them.

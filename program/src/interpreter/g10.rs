@@ -1,4 +1,4 @@
-//! Data of the machine that a program writes: coordinate systems and tools.
+//! Sets coordinate systems and tools from a program.
 //!
 //! Source: `G10` of LinuxCNC. Parameters hold origins in mm. Not here: what offsets do to a point.
 

@@ -1,4 +1,4 @@
-//! Blocks into moves.
+//! Interprets blocks as moves.
 //!
 //! Source: the order of execution of RS274/NGC. The position is kept twice: where the program says
 //! the tool is, and where that is on the machine. Not here: what each code does in detail.

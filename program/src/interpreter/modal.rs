@@ -1,4 +1,4 @@
-//! What a program has said that stays in force.
+//! Holds the modal state: what a program has said that stays in force.
 //!
 //! Source: the order of execution of RS274/NGC. Not here: motion.
 

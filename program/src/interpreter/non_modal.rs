@@ -1,4 +1,4 @@
-//! Codes that hold for one block: shifts, machine coordinates, stored points.
+//! Executes codes that hold for one block: shifts, machine coordinates, stored points.
 //!
 //! Source: `G28` to `G30.1`, `G52` to `G59.3` and `G92` to `G92.3` of RS274/NGC
 //! and LinuxCNC, where `G52` writes the offsets of `G92`. Parameters hold offsets in mm. Not

@@ -1,4 +1,4 @@
-//! Where the coordinates of the program are on the machine.
+//! Places the coordinates of the program on the machine.
 //!
 //! Source: RS274/NGC and the manual of LinuxCNC: a point of the program is shifted by `G92`, turned by
 //! the rotation of its coordinate system, and moved by the origin of the system and by the tool.

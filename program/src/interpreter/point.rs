@@ -1,4 +1,4 @@
-//! The point that the axis words of a block name, in the coordinates of the program.
+//! Computes the point that the axis words of a block name, in the coordinates of the program.
 //!
 //! Source: `G90` `G91`, polar coordinates `@` `^` and `G53` of RS274/NGC and LinuxCNC. Not here:
 //! where the point is on the machine.

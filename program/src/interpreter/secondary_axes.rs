@@ -1,5 +1,4 @@
-//! Places the axes beside X, Y and Z on the machine: the rotary ones A, B and C, and a second set of straight
-//! ones, U, V and W.
+//! Reads words of the axes beside X, Y and Z: rotary axes A, B, C and secondary axes U, V, W.
 //!
 //! Source: RS274/NGC and LinuxCNC: they have places in every coordinate system and in the shift of `G92`, in the
 //! parameters behind those of X, Y and Z. Rotations and tools leave them alone. Not here: X, Y and Z.

@@ -1,4 +1,4 @@
-//! Codes of tools: their table, their length, and on which side of the path they go.
+//! Executes codes of tools: table, length, side of the path.
 //!
 //! Source: `G10 L1`, `G40` to `G43.2` and `G49` of LinuxCNC. Not here: what compensation does.
 

@@ -1,4 +1,4 @@
-//! The tool table: how long and how thick each tool is.
+//! Reads the tool table: length and diameter of each tool.
 //!
 //! Source: the tool table file of LinuxCNC: one tool a line, `T` number, `P` pocket, `X Y Z` offsets,
 //! `D` diameter, `;` remark. Not here: what a program does with them.

@@ -1,4 +1,4 @@
-//! Units of a program, and the one place where they become mm and s.
+//! Converts units of a program to mm and s, the only place that does.
 //!
 //! Source: `G20`, `G21`, `G93` and `G94` of RS274/NGC.
 

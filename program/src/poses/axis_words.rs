@@ -1,4 +1,4 @@
-//! Moves of axis words as moves of the tool in the workpiece.
+//! Turns moves of axis words into moves of the tool in the workpiece.
 //!
 //! Source: `G43.4`, `G93` and rotary words as LinuxCNC and others read them; a feedrate of rotary axes
 //! alone is in degrees a minute, of the root of the sum of their squares, one of U, V and W alone in mm along them. Arcs

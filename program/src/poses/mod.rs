@@ -1,4 +1,4 @@
-//! Programs for machines with rotary axes as a stream of tool poses.
+//! Streams programs for machines with rotary axes as tool poses.
 //!
 //! Not here: the languages, and what a pose means on a machine.
 

@@ -1,4 +1,4 @@
-//! Reads a line of a printer's program into axis words, a rest, or an order that moves nothing.
+//! Parses a line of a printer's program into axis words, a rest, or an order without motion.
 //!
 //! Source: the codes of Marlin, RepRapFirmware and Klipper. Orders with free text (`M117`) and those of Klipper
 //! (`SET_...`) are no words at all. Not here: what extrusion is, see `printer`.

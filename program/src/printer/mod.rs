@@ -1,4 +1,4 @@
-//! Turns extrusion, homing and offsets of printers into moves and rests.
+//! Executes orders of printers beside motion: extrusion, homing, offsets.
 //!
 //! Source: Marlin and Klipper. `E` is a length of filament, no axis: a move takes as long as its path does, and a
 //! block with `E` alone lasts as long as the filament needs at the feedrate, while the axes rest. `G0` keeps the

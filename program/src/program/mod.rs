@@ -1,4 +1,4 @@
-//! A part program as a stream of moves.
+//! Streams a part program as moves.
 //!
 //! Not here: the language, see the crate.
 

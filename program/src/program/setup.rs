@@ -1,4 +1,4 @@
-//! What a program is told before its first line: tools, subroutines, axes, language.
+//! Sets a program up before its first line: tools, subroutines, axes, language.
 //!
 //! Not here: reading.
 

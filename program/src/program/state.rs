@@ -1,4 +1,4 @@
-//! What can be asked of a program while it is read.
+//! Answers questions about a program while it is read.
 //!
 //! Not here: its moves.
 

@@ -1,4 +1,4 @@
-//! How often each code was met.
+//! Counts how often each code was met.
 //!
 //! Not here: what it means.
 

@@ -1,4 +1,4 @@
-//! Codes of Sinumerik by those of RS274/NGC.
+//! Translates codes of Sinumerik into those of RS274/NGC.
 //!
 //! Not here: what they do.
 

@@ -1,4 +1,4 @@
-//! Jumps, conditions and loops of Sinumerik.
+//! Executes jumps, conditions and loops of Sinumerik.
 //!
 //! Source: the programming manual of Sinumerik 840D sl: `GOTOF` `GOTOB` `GOTO` `GOTOC`, `IF`, `WHILE`, `FOR`,
 //! `LOOP`, `REPEAT`. Nothing is remembered of a loop but its lines, so that jumps out of it do no harm. Not

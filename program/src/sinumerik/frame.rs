@@ -1,4 +1,4 @@
-//! Programmable frames of Sinumerik.
+//! Applies programmable frames of Sinumerik.
 //!
 //! Source: `TRANS` `ATRANS` `ROT` `AROT` of the programming manual of Sinumerik 840D sl. Not here: what a
 //! frame does to a point.

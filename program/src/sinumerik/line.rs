@@ -1,4 +1,4 @@
-//! How a line of Sinumerik begins: block number, jump mark, a word about the order of lines.
+//! Parses the beginning of a Sinumerik line: block number, jump mark, flow word.
 //!
 //! Not here: what that word does.
 

@@ -1,4 +1,4 @@
-//! A first cut of the language of Sinumerik 840D, into the blocks of RS274/NGC.
+//! Translates Sinumerik 840D into the blocks of RS274/NGC.
 //!
 //! Source: the programming manual of Sinumerik 840D sl, as post-processors use it: addresses with `=`,
 //! names, `DEF`, frames (`TRANS` `ATRANS` `ROT` `AROT`), `SUPA`, `TRAORI` `TRAFOOF`, `CYCLE832`. Not

@@ -1,4 +1,4 @@
-//! Words of a line for Sinumerik: names, addresses, what stands in brackets.
+//! Splits a Sinumerik line into words: names, addresses, brackets.
 //!
 //! Not here: what they mean, see `sinumerik`, and expressions, see `sinumerik_value`.
 

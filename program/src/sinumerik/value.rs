@@ -1,4 +1,4 @@
-//! Expressions of Sinumerik.
+//! Evaluates expressions of Sinumerik.
 //!
 //! Source: the programming manual of Sinumerik 840D sl: operators bind from the tightest to the loosest as
 //! `NOT`, `* / DIV MOD`, `+ -`, `AND`, `XOR`, `OR`, comparisons. Not here: words, and operators of bits.

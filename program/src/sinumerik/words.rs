@@ -1,4 +1,4 @@
-//! Words of Sinumerik that need no more than a list: those without effect, and those that are refused.
+//! Lists words of Sinumerik without effect, and those that are refused.
 //!
 //! Source: the programming manual of Sinumerik 840D sl. Not here: words that do something.
 

@@ -1,4 +1,4 @@
-//! Which language a program is written in.
+//! Detects the language of a program.
 //!
 //! Source: the usual endings of files, and what only one language begins with. Not here: reading it.
 

@@ -1,4 +1,4 @@
-//! One line of a program into words: a letter and a number, with their place.
+//! Splits one line of a program into words: a letter and a number, with their place.
 //!
 //! Source: RS274/NGC, sections on the format of a line. Where a number stands, a parameter or an
 //! expression may stand too. Not here: what a word means, and lines with an O word.

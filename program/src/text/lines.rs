@@ -1,4 +1,4 @@
-//! Lines of a file, one at a time, in bounded memory.
+//! Reads the lines of a file one at a time, in bounded memory.
 //!
 //! Not here: what a line means.
 

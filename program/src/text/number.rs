@@ -1,4 +1,4 @@
-//! Decimal numbers as programs write them, to the nearest float.
+//! Parses decimal numbers as programs write them, to the nearest float.
 //!
 //! Source: RS274/NGC, section on real values. Not here: parameters and expressions, which may stand
 //! where a number stands.

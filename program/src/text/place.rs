@@ -1,4 +1,4 @@
-//! Where something stands in a program.
+//! Names the place of a word in a program: file, line and column.
 //!
 //! Bytes are counted while reading, because that costs nothing; characters only once there is
 //! something to say.

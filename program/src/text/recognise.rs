@@ -1,4 +1,4 @@
-//! Recognises the language of a program by its first lines, where they can be of no other.
+//! Recognises the language of a program by its first lines.
 //!
 //! Source: what slicers write at the head of their files and the orders that only printers have; the first
 //! lines of Heidenhain Klartext, of STEP-NC, and of turning programs after ISO 6983. Not here: endings of

@@ -1,4 +1,4 @@
-//! A corner rounded by a quintic: how large, how fast, and as pieces of constant jerk.
+//! Rounds a corner by a quintic: its size, its speed, and its pieces of constant jerk.
 //!
 //! Source: the classical scheme of corner splines, at constant speed between the two straight parts.
 //! A quintic is no motion of constant jerk, so equally spaced points of it are the control points of a

@@ -1,4 +1,4 @@
-//! Straight vertices in, motion out: legs and rounded corners in a look-ahead window.
+//! Plans straight vertices into segments and rounded corners in a look-ahead window.
 //!
 //! Source: ours, for the feed between the corners of constant speed. The window of kinematic smoothing
 //! scales turns that have speeds alone, over links that are the straight parts of the legs; that a

@@ -1,4 +1,4 @@
-//! Corners rounded by curvature-optimal quintics, the baseline of the dissertation's comparisons.
+//! Rounds corners by curvature-optimal quintics, the baseline of the dissertation.
 //!
 //! Source: Sencer, Ishizaki and Shamoto (2015). Each corner is replaced by one symmetric quintic
 //! Bezier curve that fits the tolerance and half of each leg, is travelled at constant speed, and is

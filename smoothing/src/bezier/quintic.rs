@@ -1,4 +1,5 @@
-//! The symmetric quintic of least curvature around a corner, and points in equal distances on it.
+//! Computes the symmetric quintic of least curvature around a corner, and points at equal distances
+//! on it.
 //!
 //! Source: Sencer, Ishizaki and Shamoto (2015), "A curvature optimal sharp corner smoothing algorithm
 //! for high-speed feed motion generation of NC systems along linear tool paths". Three control points

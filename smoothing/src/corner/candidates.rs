@@ -1,4 +1,4 @@
-//! Which motion a window tries at a corner.
+//! Selects the corner blends that a window tries at a corner.
 //!
 //! Source: the comparison of section 2.4, per corner. Not here: the motions, and how they share
 //! short moves.

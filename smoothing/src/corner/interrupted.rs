@@ -1,4 +1,4 @@
-//! Interrupted corners: the acceleration is zero where straight move and corner meet.
+//! Blends a corner by interrupted acceleration, which is zero at both ends of the corner.
 //!
 //! Source: section 2.2.2 and 2.3, equations 2.19 to 2.33, in vector form; a corner whose speed the
 //! feedrate limits is the same motion at that speed. Not here: how corners share a short move.

@@ -1,4 +1,4 @@
-//! A corner motion in numbers: what the window scales and the plan unrolls into pieces.
+//! Describes a corner blend in numbers: scaled by the window, unrolled into pieces by the planner.
 //!
 //! Source: sections 2.3 and 3.2, in the vector form where a corner is a mixture of the incoming and
 //! the outgoing direction. Not here: how large it may be, see the blenders.

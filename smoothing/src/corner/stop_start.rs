@@ -1,5 +1,5 @@
-//! Stop and start overlapped: braking along the incoming move while already starting along the
-//! outgoing one.
+//! Blends a corner by an overlapped stop and start: it brakes along the incoming move while it
+//! starts along the outgoing one.
 //!
 //! Source: ours; section 2.4 of our derivation of chapters 2 and 3, which has the uninterrupted
 //! corner as its case of a single jerk phase. Where that corner is limited by acceleration, this one

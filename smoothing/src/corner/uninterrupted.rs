@@ -1,5 +1,4 @@
-//! Uninterrupted corners: deceleration runs into the corner and acceleration out of it, at constant
-//! jerk.
+//! Blends a corner by uninterrupted acceleration at constant jerk.
 //!
 //! Source: sections 2.2.3 and 3.2, equations 2.34 to 2.44 and 3.5 to 3.9, in vector form: the motion
 //! is a cubic Bezier curve whose two inner control points are the corner. Not here: how corners share a

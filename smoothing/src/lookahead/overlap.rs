@@ -1,4 +1,5 @@
-//! Overlapping corners: from the middle of one uninterrupted corner to the middle of the next.
+//! Overlaps two corners: motion from the middle of one uninterrupted corner to the middle of the
+//! next.
 //!
 //! Source: section 3.3.2. Two jerks an axis join both middles, in closed form for a given duration; the
 //! shortest duration found that keeps every limit and the tolerance replaces the printed choice of

@@ -1,4 +1,4 @@
-//! How far two corner motions may be scaled so that the move between them has room for both.
+//! Scales two corner blends so that the segment between them has room for both.
 //!
 //! Source: section 3.3.1; lengths go with the cube of the scale. Not here: the order in which corners
 //! are looked at, see the window.

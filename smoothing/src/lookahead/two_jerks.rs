@@ -1,4 +1,4 @@
-//! From one state to another by two jerks an axis, over a common duration.
+//! Connects two states by two jerks an axis over a common duration.
 //!
 //! Source: equations 3.27 to 3.32. For a given duration each axis has one pair of jerks and one instant
 //! between them, in closed form; the durations at which an axis gains or loses its pair are roots of

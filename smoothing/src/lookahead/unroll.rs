@@ -1,4 +1,4 @@
-//! A leg and the corner at its end, unrolled into pieces.
+//! Unrolls a segment and the corner at its end into pieces.
 //!
 //! Source: sections 3.2 and 3.3. Each leg and each corner is anchored at programmed points, so that
 //! rounding does not add up along the path. Not here: the choice of the corner.

@@ -1,4 +1,4 @@
-//! The look-ahead window: how much of each corner motion the moves between them leave room for.
+//! Scales every corner blend of the look-ahead window so that a stop at its end stays possible.
 //!
 //! Source: section 3.3.1, with a proof where the text has an unproven backward pass. Every corner has
 //! a motion and a scale between 0 (a full stop) and 1. If two scales fit a move, both times any factor

@@ -1,4 +1,4 @@
-//! One plan of a stretch after another, each slower where the one before exceeded something.
+//! Plans a section repeatedly, each time slower where the plan before exceeded a limit.
 //!
 //! Source: ours. A plan counts only when every piece of it has been found inside all limits and the tolerance.
 //! Not here: what a plan is needed for.

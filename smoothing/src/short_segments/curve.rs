@@ -1,4 +1,4 @@
-//! A stretch of path as a curve over its length.
+//! Describes a section of the path as a curve over its length.
 //!
 //! Source: ours. Not here: time.
 

@@ -1,4 +1,4 @@
-//! Superposed corners: many small corners smoothed at once.
+//! Smooths many short segments at once: a cubic B-spline over equal time steps.
 //!
 //! Source: ours; section 3.3.2 overlaps two corners, and a run of short moves overlaps many. The path
 //! is travelled with a jerk-limited progress, and every corner's velocity jump is spread over the same

@@ -1,4 +1,4 @@
-//! How fast each place of a curve may be passed.
+//! Computes the velocity limit curve of a section.
 //!
 //! Source: ours. At constant speed the filtered motion through a place of the curve has the second
 //! and third differences of the points around it for acceleration and jerk, so the speed that a place

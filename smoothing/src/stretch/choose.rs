@@ -1,4 +1,4 @@
-//! How a stretch is travelled fastest.
+//! Chooses the fastest way through a stretch.
 //!
 //! Source: ours. From rest to rest there are corners, superposed corners, and, where there are arcs, each
 //! move by itself, which is what full stops would be; one of these is the measure of going on without a

@@ -1,4 +1,4 @@
-//! Which stretches of a path are travelled with superposed corners.
+//! Divides a section into stretches for short-segment smoothing.
 //!
 //! Source: ours. The path is cut where it turns sharply or must stop; each stretch between is planned
 //! corner by corner, with superposed corners, and, where it has arcs, move by move, each from rest to

@@ -1,4 +1,4 @@
-//! From stretch to stretch: at rest, or at speed where that is faster.
+//! Joins stretches: at rest, or at speed where that is faster.
 //!
 //! Source: ours. What is handed out can always be brought to rest in no more time than full stops at all
 //! moves so far would have taken: a stretch goes on corner by corner only where the end of the

@@ -1,4 +1,4 @@
-//! The vertices of the legs that may still be planned corner by corner.
+//! Stores the vertices of segments that may still be planned corner by corner.
 //!
 //! Source: ours. Corners have more of the tolerance to merge with than fine stretches have, and merge
 //! best what has not been merged before. For the same reason their arcs have fewer chords. Not here:

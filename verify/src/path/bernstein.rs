@@ -1,5 +1,4 @@
-//! Pieces of motion as Bézier curves, and polynomials by their Bernstein coefficients: the curve
-//! lies in the hull of its points, a polynomial between its smallest and largest coefficient.
+//! Bounds pieces of motion by Bézier points and polynomials by Bernstein coefficients.
 //!
 //! Source: the hull property and de Casteljau's halving, both standard. Not here: distances.
 

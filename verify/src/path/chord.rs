@@ -1,4 +1,4 @@
-//! The straight way between two set-points, and how far the motion may leave it.
+//! Bounds how far the motion may leave the chord between two set-points.
 //!
 //! Source: a motion of acceleration at most `a` leaves the chord of a time `t` by at most
 //! `a t^2 / 8`, and one that rests at a point within a time `t` is at most `j t^3 / 6` away from it.

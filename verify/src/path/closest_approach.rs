@@ -1,4 +1,4 @@
-//! How close a piece of motion comes to a point, and when it first comes within a distance.
+//! Finds the closest approach of a piece to a point, and when it first comes within a distance.
 //!
 //! Source: the squared distance is a polynomial of degree 6 in Bernstein form, whose smallest
 //! coefficient bounds it from below and which is monotone when its coefficients are. Not here:

@@ -1,4 +1,4 @@
-//! The largest distance of a curve from a range of moves.
+//! Finds the largest distance of a curve from a range of moves.
 //!
 //! Source: branch and bound over halves of the curve. Each move has a cubic nowhere below its
 //! distance; the distance from the nearer of two moves is nowhere above any weighted mean of

@@ -1,4 +1,4 @@
-//! A bound of the distance of a whole curve from an arc.
+//! Bounds the distance of a whole curve from an arc.
 //!
 //! Source: the remainder of linear interpolation, `max|f''|/8`, applied twice to the way from a
 //! point that moves along the arc beside the curve. Not here: lines, whose distance is convex.

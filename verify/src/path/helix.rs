@@ -1,4 +1,4 @@
-//! Distance from an arc, which may climb and whose radius may change.
+//! Measures the distance from an arc, which may climb and whose radius may change.
 //!
 //! Source: the foot of the perpendicular by Newton's method from the angle of the point. Not here:
 //! the distance of a whole curve.

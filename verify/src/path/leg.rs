@@ -1,4 +1,4 @@
-//! A move of the path as the judge sees it: geometry, bounds, and what the motion has done there.
+//! Describes a move of the path to the judge: geometry, bounds, and the motion seen there.
 //!
 //! Source: the meaning of [`toolglide_kinematics::Tolerance`]. Not here: motion.
 

@@ -1,4 +1,4 @@
-//! The moves that the judge still needs, in order.
+//! Keeps the moves that the judge still needs, in order.
 //!
 //! Source: moves are forgotten once the motion has gone past them. Not here: when that is.
 

@@ -1,4 +1,4 @@
-//! Limits at every instant of a piece, and continuity between pieces.
+//! Judges limits at every instant of a piece, and continuity between pieces.
 //!
 //! Source: velocity is a parabola whose extreme lies where the acceleration vanishes, acceleration
 //! is a straight line, jerk is constant; the square of the speed is a quartic. Not here: the path.

@@ -1,4 +1,4 @@
-//! The judge of planned pieces, one after the other, with bounded memory.
+//! Judges planned pieces one after the other in bounded memory.
 //!
 //! Source: the meaning of [`toolglide_kinematics::Tolerance`], and the limits of section 2.2 at every instant. Not
 //! here: any formula of any planner, and the record of corners and stops.

@@ -1,4 +1,4 @@
-//! Corners passed in turn, stops made, dwells rested out, arcs followed to their end.
+//! Tracks corners passed in turn, stops made, dwells rested out, arcs followed to their end.
 //!
 //! Source: the second half of the meaning of [`toolglide_kinematics::Tolerance`]. Not here: the distance from the
 //! path between corners.

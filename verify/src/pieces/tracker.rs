@@ -1,4 +1,4 @@
-//! Where along the path a motion is that names no moves.
+//! Locates a motion along the path when it names no moves.
 //!
 //! The motion is on one of a window of moves: the newest is the one whose end it has not passed
 //! yet, the oldest is the first that it has not left behind. Ends are passed in order, as soon as

@@ -1,4 +1,4 @@
-//! What the axes of a machine do while the tool follows a piece of motion.
+//! Computes the motion of the axes while the tool follows a piece.
 //!
 //! Source: interpolation at the nodes of Chebyshev, which is as exact as the last coefficients are
 //! small, and its derivatives. Not here: any formula of a machine but its inverse kinematics.

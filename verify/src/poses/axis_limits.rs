@@ -1,4 +1,4 @@
-//! The axes behind the tool: their limits, their travel, and that nothing jumps.
+//! Judges the axes behind the tool: limits, travel, continuity.
 //!
 //! Source: the limits of every axis at every instant. Not here: how their motion is found, see `axes`.
 

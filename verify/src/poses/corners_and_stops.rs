@@ -1,4 +1,4 @@
-//! Ends of legs: corners that are passed, stops, and dwells.
+//! Judges the ends of legs: corners, stops and dwells.
 //!
 //! Source: the meaning of [`toolglide_kinematics::Tolerance`] at corners; a stop is exact, and a dwell lasts. Not here: what
 //! is between the ends.

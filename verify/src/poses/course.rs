@@ -1,4 +1,4 @@
-//! The course of tool and axes between the ends: deviation from the path, and speed along it.
+//! Judges tool and axes between the ends of legs: deviation and speed.
 //!
 //! Source: the meaning of [`toolglide_kinematics::Tolerance`] and [`toolglide_kinematics::OrientationTolerance`] along the path. Not here: how the
 //! largest deviation is found, see `away`.

@@ -1,5 +1,4 @@
-//! The judge of pose motion: both tolerances, and the axes of a machine behind its inverse
-//! kinematics.
+//! Judges pose motion: both tolerances, and the axes of a machine behind its inverse kinematics.
 //!
 //! Source: the meaning of [`toolglide_kinematics::Tolerance`] and [`toolglide_kinematics::OrientationTolerance`], and the limits of
 //! every axis at every instant. Not here: any formula of any planner or machine.

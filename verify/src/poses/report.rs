@@ -1,4 +1,4 @@
-//! What the judge of poses found, and what was broken.
+//! Reports the findings of the pose judge.
 //!
 //! Source: the house style of messages: place, quantity, value, bound. Not here: finding it.
 

@@ -1,4 +1,4 @@
-//! The legs that the judge of poses still needs, and what the motion did at their ends.
+//! Keeps the legs that the pose judge still needs, and the motion at their ends.
 //!
 //! Source: legs are forgotten once the motion has gone past them. Not here: judging.
 

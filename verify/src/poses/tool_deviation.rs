@@ -1,4 +1,4 @@
-//! How far a motion of poses is from its path, with a bound over whole stretches of time.
+//! Bounds the deviation of pose motion from its path over intervals of time.
 //!
 //! Source: geometry. A cubic curve over its chord is bounded by its values at the thirds of the
 //! stretch, and the distance from a segment is convex along the chord. Not here: time, and which

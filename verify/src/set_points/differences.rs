@@ -1,4 +1,4 @@
-//! Velocity, acceleration and jerk of set-points, as far as they are certain.
+//! Differences set-points into velocity, acceleration and jerk, as far as they are certain.
 //!
 //! Source: `n!` times the divided difference of order `n` is a weighted mean of the nth derivative
 //! over its points (Peano), so that it never exceeds a bound that the derivative keeps, whatever

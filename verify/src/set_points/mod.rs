@@ -1,4 +1,4 @@
-//! The judge of set-points, whoever made them.
+//! Judges anyone's set-points.
 //!
 //! Between two points the motion is unknown, so only what is certain counts: the points themselves
 //! for the distance from the path, mean derivatives for the limits, and for corners and stops the

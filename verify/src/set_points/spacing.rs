@@ -1,4 +1,4 @@
-//! Set-points too far apart to show what they are judged by.
+//! Judges whether set-points are near enough to each other to show what they are judged by.
 //!
 //! Between two rows the motion is known as far as its limits bind it. With `a` and `j` the limits of acceleration
 //! and jerk of an axis, `v` that of its velocity, and `t` the time between the rows, they show

@@ -1,5 +1,4 @@
-//! The sharpest corner of a path of poses, of the tool tip or of the tool orientation, and the motion
-//! near it, found while both stream past.
+//! Finds the sharpest corner of a path of poses and the motion near it while both stream past.
 //!
 //! Near a corner both are flat: the tip in the plane of its two directions, the orientation in the
 //! plane that touches the unit sphere. Not here: drawing.

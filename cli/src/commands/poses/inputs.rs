@@ -1,4 +1,4 @@
-//! What a run on tool poses reads: machine, start, filters, and the program as legs.
+//! Reads the inputs of a run on tool poses: machine, start, filters, legs.
 //!
 //! Not here: options of straight axes.
 

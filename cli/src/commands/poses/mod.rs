@@ -1,5 +1,4 @@
-//! Programs of tool poses: planned, judged, written and drawn for machines that turn the tool or the
-//! workpiece.
+//! Plans, judges, writes and draws programs of tool poses.
 //!
 //! Not here: reading programs, planning, and machines.
 

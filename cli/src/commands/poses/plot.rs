@@ -1,5 +1,5 @@
-//! A picture of pose motion: the path of the tool tip, the orientation on the sphere, the sharpest
-//! corner of both with its tolerance, and what share of its limits every axis uses.
+//! Draws pose motion: path of the tool tip, orientation on the sphere, sharpest corner, use of axis
+//! limits.
 //!
 //! Gathered in fixed memory while the motion streams past. Derivatives are differences of set-points,
 //! good enough to look at; the judge is exact. Not here: planning.

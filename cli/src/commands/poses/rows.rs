@@ -1,4 +1,4 @@
-//! Set-points of pose motion as CSV: time, axes in machine order, and the tool pose where asked for.
+//! Writes set-points of pose motion as CSV: time, axes, and the tool pose where asked for.
 //!
 //! As for straight axes, the end is one more row, exactly. Not here: sampling.
 

@@ -1,4 +1,4 @@
-//! Plans a program of tool poses: set-points, summary, plot.
+//! Plans a program of tool poses and writes set-points, summary and plot.
 //!
 //! Files are begun before anything is planned and named when everything is done.
 

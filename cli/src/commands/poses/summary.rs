@@ -1,4 +1,4 @@
-//! What came out of a run on tool poses, for a machinist and for a program.
+//! Prints the summary of a plan of tool poses.
 //!
 //! Source: the report of the judge of poses. Not here: judging.
 

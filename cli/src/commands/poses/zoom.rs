@@ -1,5 +1,4 @@
-//! The sharpest corner of the tool tip or of the tool orientation, seen from near: the programmed
-//! path, the motion, and the tolerance.
+//! Draws the sharpest corner of tool tip or tool orientation from near.
 
 use crate::commands::poses::corner::{Part, PoseCorner, PoseCornerFinder};
 use crate::plot::canvas::{Anchor, Canvas, Outline, through};

@@ -1,4 +1,4 @@
-//! The turn above which a corner is faster with uninterrupted acceleration than with interrupted.
+//! Finds the turn above which an uninterrupted corner is faster than an interrupted one.
 //!
 //! Source: figure 2.9. Two moves of 10 mm, as in section 2.3.1, are planned by both methods; the
 //! turn between them is searched by halving an interval.

@@ -1,4 +1,4 @@
-//! The figures and tables with numbers, and what they print.
+//! Lists the figures and tables of the dissertation with their printed numbers.
 //!
 //! Programs, feedrates and tolerances are those of `examples/dissertation/`; the limits of both axes
 //! stand here. Where the geometry is not printed it is our own construction, and says so.

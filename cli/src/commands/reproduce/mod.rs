@@ -1,4 +1,4 @@
-//! The numbers that the dissertation prints, beside ours, planned now.
+//! Plans the examples of the dissertation and prints its numbers beside ours.
 //!
 //! Source: chapters 2 to 4 of Tajima, Smooth Trajectory Generation for Machine Tools and Industrial
 //! Robots (Oregon State University, 2019). Not here: the programs, which are part of the examples.

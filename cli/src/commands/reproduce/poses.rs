@@ -1,4 +1,4 @@
-//! Tables 5.1 and 5.2: tool poses, planned without a machine, as the dissertation does.
+//! Plans tables 5.1 and 5.2: tool poses without a machine, as the dissertation does.
 //!
 //! Neither tolerances of table 5.1 nor feedrate and tolerances of table 5.2 are printed: those of 5.1
 //! follow from the blend times, those of 5.2 are the best match of what is said about it. Not here:

@@ -1,4 +1,4 @@
-//! What is compared with print.
+//! Defines the quantities that are compared with print.
 //!
 //! Not here: its value.
 

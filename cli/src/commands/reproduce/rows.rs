@@ -1,4 +1,4 @@
-//! The comparison with print as rows, for people and for programs.
+//! Prints the comparison with the dissertation as rows.
 
 use crate::commands::reproduce::crossover::crossover;
 use crate::commands::reproduce::experiments::{Entry, Experiment};

@@ -1,4 +1,4 @@
-//! What a point of the motion must keep: a box, a disc, a tube.
+//! Defines the constraints on a point of the motion: box, disc, tube.
 //!
 //! Source: the Bezier points of position and velocity of an interval of constant jerk; what they keep,
 //! the interval keeps at every instant, because it lies in their hull and tube, ball and box are

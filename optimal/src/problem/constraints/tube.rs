@@ -1,4 +1,4 @@
-//! A point within a distance of a straight segment: the tube.
+//! Keeps a point within a distance of a straight segment: the tube.
 //!
 //! Source: as [`rows`](super). In a capsule the nearest point of the segment is one more unknown, which
 //! its own rows eliminate. Not here: boxes and discs.

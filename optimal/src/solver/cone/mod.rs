@@ -1,4 +1,4 @@
-//! One inequality, and one second-order cone, of an interior-point method.
+//! Implements the inequality and the second-order cone of the interior-point method.
 //!
 //! Source: the predictor-corrector method of Mehrotra with the scaling of Nesterov and Todd. A slack
 //! `s` and a multiplier `z` stay inside their cone; a weight maps changes of the slack to changes of

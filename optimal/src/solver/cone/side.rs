@@ -1,4 +1,4 @@
-//! One inequality, and what all rows of a problem have in common.
+//! Implements one inequality, and the state that all constraints share.
 //!
 //! Source: as [`cone`](super). Not here: second-order cones.
 

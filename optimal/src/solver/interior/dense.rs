@@ -1,4 +1,4 @@
-//! The sweep against one dense factorisation of the whole Newton system.
+//! Compares the sweep with one dense factorisation of the Newton system.
 
 use crate::problem::Visit;
 use crate::solver::cone::{Centre, Reach, Sums};

@@ -1,4 +1,4 @@
-//! Random windows to many digits: rounding must not end a solve, whatever lies near its bounds.
+//! Solves random windows to many digits, so that rounding never ends a solve.
 
 use crate::solver::interior::*;
 use crate::window::{EndState, Window, WindowSegment};

@@ -1,4 +1,4 @@
-//! A predictor-corrector interior-point method for one linearised window.
+//! Solves one linearised window by a predictor-corrector interior-point method.
 //!
 //! Unknown are the states at the nodes, the jerks of the intervals, the stretch of each segment's
 //! duration and the excess over the bounds. Each iteration weighs all rows, eliminates jerks and

@@ -1,4 +1,4 @@
-//! What an iteration does with the rows of a node: one visitor per pass.
+//! Visits the constraints of a node once per pass of an iteration.
 //!
 //! Source: Mehrotra's predictor-corrector method. Not here: the order of the passes, see
 //! [`interior`](crate::solver::interior).

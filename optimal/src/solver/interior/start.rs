@@ -1,5 +1,4 @@
-//! Where the iterations begin: on a motion that obeys its dynamics, inside all bounds by as much excess as
-//! that takes.
+//! Starts the iteration on a motion that obeys its dynamics, inside all relaxed bounds.
 //!
 //! Source: ours. What is missed at the start would have to be made up for on the way, and a bound that the way
 //! runs into leaves it missed. Not here: the iterations, see [`interior`](crate::solver::interior).

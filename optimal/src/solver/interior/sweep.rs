@@ -1,4 +1,4 @@
-//! The sweeps of one iteration: back through the nodes with curvatures, back with slopes, and forward.
+//! Sweeps through the nodes in one iteration: back with curvatures, back with slopes, forward.
 //!
 //! The last three intervals are special: their jerks are what the fixed end state demands.
 //!

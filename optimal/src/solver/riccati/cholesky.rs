@@ -1,4 +1,4 @@
-//! The triangular root of a curvature: what is eliminated, in whose shares squares remain squares.
+//! Factorises the curvature of an eliminated variable by Cholesky.
 //!
 //! Near a tight bound and far from others a curvature is large one way and small the other. Of its inverse the
 //! digits of the large one are lost; what then remains after elimination turns negative, and grows from node

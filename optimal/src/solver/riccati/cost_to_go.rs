@@ -1,4 +1,4 @@
-//! What everything behind a node costs, and how a coefficient and a stretch are eliminated from it.
+//! Eliminates a coefficient and a duration from the cost to go of a node.
 //!
 //! Source: as [`front`](super). Not here: going forward again.
 

@@ -1,4 +1,4 @@
-//! A quadratic of one node's coefficients, swept from the last node to the first.
+//! Sweeps the quadratic cost to go from the last node of a window to the first.
 //!
 //! The front holds the cost of everything behind a node as a quadratic of the three coefficients
 //! there, of the stretch of the segment's duration and of the excess over the bounds. One interval

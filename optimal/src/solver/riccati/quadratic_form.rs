@@ -1,4 +1,4 @@
-//! Quadratics of later states and jerks that follow linearly from the state at the front.
+//! Represents quadratic forms of later states and jerks.
 //!
 //! Source: substitution. Not here: which states those are, see [`interior`](crate::solver::interior).
 

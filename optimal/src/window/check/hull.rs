@@ -1,4 +1,4 @@
-//! What is used of a bound over a whole interval, from the Bezier points of a motion.
+//! Bounds a motion over a whole interval by its Bezier points.
 //!
 //! Source: a Bezier curve lies in the hull of its points, and halves of it by de Casteljau's method do so
 //! more closely. Not here: which bounds.

@@ -1,4 +1,4 @@
-//! Whether the motion through a window may be executed.
+//! Checks whether the motion through a window may be executed.
 //!
 //! Source: ours. Nothing that a solver says is believed: its jerks are integrated from where the motion
 //! is, the end is met exactly by the smallest change of the jerks that does so, and then every limit is

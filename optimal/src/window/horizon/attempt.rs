@@ -1,5 +1,4 @@
-//! One window: what is asked of the solver, from which guess, and whether its answer takes the place of
-//! the plan.
+//! Solves one window from a guess and decides whether its motion replaces the plan.
 //!
 //! Source: ours. A motion that takes longer than before over what was planned already, although it need
 //! not stop there anymore, is tried again from the plan before, which is feasible. Not here: which spans

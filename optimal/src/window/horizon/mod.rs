@@ -1,4 +1,4 @@
-//! Windows, one after the other: plan to a stop, hand out the first part, go on from there.
+//! Plans windows one after the other: each ends at rest, and its first part is handed out.
 //!
 //! Source: ours. The plan always ends in a full stop at the end of what has been planned. Each window
 //! starts in the state up to which motion has been handed out, covers what was planned behind it and

@@ -1,4 +1,4 @@
-//! Which motion each corner gets: the cheapest way through the candidates of all corners.
+//! Finds the fastest path through the candidates of all corners by dynamic programming.
 //!
 //! Source: ours; section 8 of our derivation shows that no single kind is always the fastest. Each
 //! corner offers a full stop and the motions that the windows have scaled; every motion of a window

@@ -1,4 +1,4 @@
-//! A corner in the lattice: its candidates, and the cheapest way to each of them.
+//! Holds the candidates of one corner and the fastest path to each of them.
 //!
 //! Source: ours, as the lattice. Not here: what is done with the columns.
 

@@ -1,4 +1,4 @@
-//! Straight vertices in, motion out: a path planned corner by corner.
+//! Plans a path of straight vertices corner by corner.
 //!
 //! Source: chapter 3. Vertices merge into legs, legs meet in corners, windows scale a motion for each
 //! corner, the lattice chooses among them, and the chosen ones are unrolled into pieces when they are

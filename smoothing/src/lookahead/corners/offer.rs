@@ -1,4 +1,4 @@
-//! The candidates of each corner, handed to the lattice as soon as all windows have scaled theirs.
+//! Offers the candidates of each corner to the candidate graph once all windows have scaled them.
 //!
 //! Source: ours. Not here: how the candidates are made, and the choice among them.
 

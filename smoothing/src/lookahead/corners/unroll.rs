@@ -1,4 +1,4 @@
-//! The chosen motions as pieces, leg by leg.
+//! Emits the chosen motions as pieces, segment by segment.
 //!
 //! Source: section 3.3. Not here: the choice.
 

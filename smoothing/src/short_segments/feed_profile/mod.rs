@@ -1,4 +1,4 @@
-//! The jerk-limited progress along a stretch.
+//! Plans the jerk-limited feed profile along a section under its velocity limit curve.
 //!
 //! Source: ours. Places allow speeds, and leave some of the limits to changes of speed, which the
 //! look-ahead window plans as if the stretch were straight; where the progress would still be too

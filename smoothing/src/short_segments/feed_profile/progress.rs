@@ -1,5 +1,4 @@
-//! The progress along a stretch against time: between the places at which it is held, a feed of up to seven
-//! phases.
+//! Evaluates the progress along a section against time, by S-curves of up to seven phases.
 //!
 //! Source: section 3.3.1 for the feed. Not here: where it is held, and at which speed.
 

@@ -1,4 +1,4 @@
-//! What a spline exceeds, exactly.
+//! Checks velocity, acceleration, jerk and deviation of a spline exactly.
 //!
 //! Source: ours. Acceleration at the knots and jerk between them are differences of control points;
 //! Bezier points bound the velocity, and where the motion runs, between the knots. Not here: what is done about

@@ -1,4 +1,4 @@
-//! Control points in equal time steps, and the motion between them.
+//! Holds control points in equal time steps and the motion between them.
 //!
 //! Source: ours. A cubic spline over equal steps has the second difference of its control points for
 //! acceleration at the knots and the third for jerk between them. Not here: where the control points

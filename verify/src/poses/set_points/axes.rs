@@ -1,4 +1,4 @@
-//! Limits and travel of the axes at the rows seen last.
+//! Judges limits and travel of the axes at the last rows.
 //!
 //! Source: divided differences, less what rounding may add to them. Not here: the tool.
 

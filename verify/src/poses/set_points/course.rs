@@ -1,4 +1,4 @@
-//! The tool along the path: where each row is, once the next one is known.
+//! Locates each row of the tool along the path once the next row is known.
 //!
 //! Source: the way between two rows is at most so far from its chord as its acceleration bends it, which the
 //! second differences of the rows on both sides show. Not here: the axes, and which part of the path a row is

@@ -1,4 +1,4 @@
-//! The judge of set-points of axes against a path of poses.
+//! Judges set-points of axes against a path of poses.
 //!
 //! Source: forward kinematics of every row; divided differences for the limits, of which rounding takes
 //! its part, so that what is reported is certain. The axes are judged in `axes`, the tool in `course`. Tip and

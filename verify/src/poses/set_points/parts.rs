@@ -1,4 +1,4 @@
-//! The path of tip or tool in parts, and how far a row is from them.
+//! Divides the path of tip or tool into parts and measures the distance of a row from them.
 //!
 //! Source: distances from segments and arcs, less what rounding may add to them. A move in which the tip
 //! stands still belongs to the part before of the tip, and likewise for the tool. Not here: which part a row is on.

@@ -1,4 +1,4 @@
-//! Whether rows of axes are near enough to each other to show what they are judged by.
+//! Judges whether rows of axes are near enough to each other to show what they are judged by.
 //!
 //! Source: each axis leaves the chord of a time by at most an eighth of its square times how hard it accelerates,
 //! which the rows and the limit of its jerk show; forward kinematics says what that is at the tool, axis by axis.

@@ -1,4 +1,4 @@
-//! Which part of the path each row is on, so that as little as possible is wrong.
+//! Assigns each row to the part of the path that leaves the fewest violations.
 //!
 //! Source: dynamic programming over the parts. The motion goes along the path and never back; from one row to the
 //! next it may stay on a part, or pass its end, or several. What a row is away from the part that it is on, and

@@ -1,4 +1,4 @@
-//! The interior-point method against a general conic solver, random windows.
+//! Compares the interior-point method with a general conic solver on random windows.
 
 mod table;
 

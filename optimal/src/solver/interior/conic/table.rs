@@ -1,5 +1,4 @@
-//! The problem of a window as rows in cones, for a general solver: states and jerks are unknowns, the
-//! dynamics equations.
+//! Writes the program of a window as a table of cones for a general solver.
 //!
 //! Source: as [`problem`](crate::problem), written once more without chains and coefficients. Not here: what
 //! is compared.
