@@ -112,11 +112,11 @@ fn build(config: &MachineConfig) -> Result<Box<dyn MachineKinematics>, MachineEr
     }
     let kinds = kinds(config)?;
     let height = kinds.get(2).is_some_and(|(letter, _)| *letter == 'Z');
-    match kinds.as_slice() {
-        &[a, b, c] => assembled([a, b, c], height, config),
-        &[a, b, c, d] => assembled([a, b, c, d], height, config),
-        &[a, b, c, d, e] => assembled([a, b, c, d, e], height, config),
-        &[a, b, c, d, e, f] => assembled([a, b, c, d, e, f], height, config),
+    match *kinds.as_slice() {
+        [a, b, c] => assembled([a, b, c], height, config),
+        [a, b, c, d] => assembled([a, b, c, d], height, config),
+        [a, b, c, d, e] => assembled([a, b, c, d, e], height, config),
+        [a, b, c, d, e, f] => assembled([a, b, c, d, e, f], height, config),
         _ => Err(MachineError::Axes {
             given: config.axis.iter().map(|axis| axis.name).collect(),
             wanted: vec!['X', 'Y', 'Z', 'A'],

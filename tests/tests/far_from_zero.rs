@@ -1,5 +1,7 @@
 //! Rounding of large coordinates is no violation: lines, arcs and helices up to a kilometre from zero, by every method.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 use toolglide_kinematics::{Limits, Toolpath, Trajectory};
 use toolglide_tests::course::{Course, Lead, arc, go};
 use toolglide_verify::verify;
