@@ -42,7 +42,7 @@ impl AxisMove {
     /// path of all axes, so that the move lasts as long as the program says.
     ///
     /// # Errors
-    /// What [`Move::line_to`] and [`Arc::about`] refuse, [`ToolpathError::Feedrate`] for a feedrate along
+    /// What [`Move::line_to`] and [`Arc::about`] refuse, [`ToolpathError::TooLarge`] for a feedrate along
     /// all axes that no number holds, [`ToolpathError::ArcPlane`] for an arc of axes that are not there.
     pub fn on_axes<const N: usize>(&self, letters: &[char; N]) -> Result<Move<N>, ToolpathError> {
         let place = |straight: Vector<3>, beside: &[f64; 6]| {
