@@ -1,4 +1,4 @@
-//! How long a block takes to plan, and a tick to filter and follow.
+//! Measures how long a block takes to plan, and a tick to filter and follow.
 
 #![allow(missing_docs, reason = "criterion makes an undocumented function")]
 #![allow(

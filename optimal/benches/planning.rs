@@ -1,4 +1,4 @@
-//! How long planning takes for a second of motion, and how long the longest wait for one move is.
+//! Measures planning time for a second of motion, and the longest wait for one move.
 //!
 //! Not here: a single window, see the bench of the solver.
 

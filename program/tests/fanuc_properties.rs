@@ -1,4 +1,4 @@
-//! What holds for every program of FANUC, however it is written: reading ends, never panics, and tells a place.
+//! Checks every FANUC program, however it is written: reading ends, never panics, and tells a place.
 
 mod common;
 mod common_fanuc;

@@ -1,4 +1,4 @@
-//! What moves no axis becomes a warning in lenient reading.
+//! Checks that lenient reading turns words that move no axis into warnings.
 
 mod common;
 

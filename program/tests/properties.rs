@@ -1,4 +1,4 @@
-//! What holds for every program: reading ends, never panics, and does not depend on how it is
+//! Checks every program: reading ends, never panics, and does not depend on how it is
 //! written.
 
 mod common;

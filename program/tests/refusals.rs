@@ -1,4 +1,4 @@
-//! What a refusal tells, and what comes after it; what is refused is in `refused_*`.
+//! Checks the text of refusals, and what comes after one; what is refused is in `refused_*`.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! What each class of motions allows, at a right angle.
+//! Compares what each class of motions allows, at a right angle.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 

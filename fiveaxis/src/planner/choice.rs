@@ -1,4 +1,4 @@
-//! Which filters are tried for some moves between two rests.
+//! Chooses the filters of some moves between two rests by trying.
 //!
 //! Source: ours. Two filters and the pulse of a straight move from rest to rest are three averages in a row: they
 //! are its fastest motion where the pulse lasts as long as its velocity asks for, the longer filter as long as the

@@ -1,4 +1,4 @@
-//! How the tool turns along a block: along a great circle, or as the rotary axes turn it.
+//! Describes how the tool turns along a block: along a great circle, or as the rotary axes turn it.
 //!
 //! Source: ours. Rotary axes go evenly, so that corners between them are those of straight lines, in coordinates in which
 //! one radian of an axis counts as much as it swings the tool at most: `|dO| <= |(dA, sin A dC)|` on a table of A and C.

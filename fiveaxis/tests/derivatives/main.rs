@@ -1,4 +1,4 @@
-//! What the axes do, by a second derivation: Taylor series of the third order carried through
+//! Derives the motion of the axes a second time: Taylor series of the third order carried through
 //! inverse kinematics written out here, which share nothing with the planner or its judge.
 //!
 //! Source: the derivatives of a function are the coefficients of its series. Not here: positions at

@@ -1,4 +1,4 @@
-//! What must hold of the reading of any text.
+//! Checks the reading of any text.
 
 use toolglide_kinematics::{Path, PoseEnd, Tolerance, Vector};
 use toolglide_program::{Language, Poses, Program, ProgramError, Settings, Tool, ToolTable};

@@ -1,4 +1,4 @@
-//! How far the tool, and each rotary axis, are from the way that the rotary axes should go.
+//! Measures how far the tool, and each rotary axis, are from the way that the rotary axes should go.
 //!
 //! Source: ours. At every instant the motion is held against a point of a move, and a point between those of two
 //! instants is as good as any: so the difference of the rotary axes is a polynomial of the third degree, whose points of

@@ -1,4 +1,4 @@
-//! What is handed out: the plan of a window, the middle of a long move, a line from rest to rest.
+//! Hands out motion: the plan of a window, the middle of a long move, a line from rest to rest.
 //!
 //! Source: ours. What is handed out earns what the windows behind it may cost. Not here: when that is, see
 //! [`horizon`](super).
