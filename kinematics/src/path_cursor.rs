@@ -10,14 +10,14 @@ use crate::vector::Vector;
 ///
 /// # Examples
 /// ```
-/// use toolglide_kinematics::{Feedrate, Intake, Move, Tolerance, Vector};
-/// let mut intake = Intake::new(Vector::<2>::zeros());
+/// use toolglide_kinematics::{Feedrate, Move, PathCursor, Tolerance, Vector};
+/// let mut cursor = PathCursor::new(Vector::<2>::zeros());
 /// let end = Vector::<2>::new(3.0, 4.0);
 /// let line = Move::line_to(end, Feedrate::new(100.0)?, Tolerance::new(0.1)?)?;
-/// assert_eq!(intake.take(&line)?, 0);
-/// assert_eq!(intake.end(), end);
-/// assert!(intake.close());
-/// assert!(intake.take(&line).is_err(), "the end was announced");
+/// assert_eq!(cursor.take(&line)?, 0);
+/// assert_eq!(cursor.end(), end);
+/// assert!(cursor.close());
+/// assert!(cursor.take(&line).is_err(), "the end was announced");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]

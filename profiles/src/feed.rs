@@ -17,11 +17,11 @@ const PEAK_PRECISION: f64 = 1e-12;
 ///
 /// # Examples
 /// ```
-/// use toolglide_kinematics::Tangential;
-/// use toolglide_profiles::{Connection, Feed, Profile};
-/// let limits = Tangential { velocity: 100.0, acceleration: 2500.0, jerk: 2e5 };
-/// let from_rest_to_rest = Connection { from: [0.0, 0.0], to: [0.0, 0.0], limits };
-/// let feed = Feed::over(10.0, &from_rest_to_rest)?;
+/// use toolglide_kinematics::PathLimits;
+/// use toolglide_profiles::{Profile, SCurve, SCurveBoundary};
+/// let limits = PathLimits { velocity: 100.0, acceleration: 2500.0, jerk: 2e5 };
+/// let from_rest_to_rest = SCurveBoundary { from: [0.0, 0.0], to: [0.0, 0.0], limits };
+/// let feed = SCurve::over(10.0, &from_rest_to_rest)?;
 /// assert!((feed.duration() - 0.1525).abs() < 1e-12);
 /// assert!((feed.end().position - 10.0).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -31,7 +31,7 @@ const COMPARED: [(&str, f64, f64); 5] = [
     ("kcs-uninterrupted", 0.002, 0.08),
     ("kcs-global", 0.012, 0.15),
     ("fir", 0.14, 0.5),
-    ("a smaller tolerance", 0.045, 0.15),
+    ("a smaller tolerance", 0.045, 0.25),
 ];
 
 /// How long a program takes by `kcs`, which the judge must pass, and by what that is compared with.

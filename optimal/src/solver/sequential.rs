@@ -94,13 +94,13 @@ const USABLE_MISS: f64 = 1e-6;
 /// ```
 /// use toolglide_kinematics::{Limits, Vector};
 /// use toolglide_optimal::{
-///     Budget, EndState, Segment, SequentialSolver, Window, WindowMotion, WindowSolver,
+///     Budget, EndState, WindowSegment, ScpSolver, Window, WindowMotion, WindowSolver,
 /// };
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let limits = Limits::<2>::uniform(500.0, 2_500.0, 2e5)?;
 /// let corner = Vector::<2>::new(10.0, 0.0);
-/// let segment = |start, end| Segment {
+/// let segment = |start, end| WindowSegment {
 ///     start,
 ///     end,
 ///     tolerance: 0.01,
@@ -122,7 +122,7 @@ const USABLE_MISS: f64 = 1e-6;
 ///     durations: vec![0.16, 0.16],
 ///     ..WindowMotion::new()
 /// };
-/// let solved = SequentialSolver::new().solve(&window, &mut motion, &mut Budget::solves(8))?;
+/// let solved = ScpSolver::new().solve(&window, &mut motion, &mut Budget::solves(8))?;
 /// assert!(solved.duration < 0.288);
 /// assert_eq!(motion.jerks.len(), 80);
 /// # Ok(())

@@ -26,7 +26,7 @@ use toolglide_kinematics::{MoveRange, Piece};
 ///
 /// # Examples
 /// ```
-/// use toolglide_kinematics::verify::Judge;
+/// use toolglide_verify::Judge;
 /// use toolglide_kinematics::{Feedrate, Limits, Move, Tolerance, Vector};
 /// let limits = Limits::<2>::uniform(500.0, 2_000.0, 5e4)?;
 /// let mut judge = Judge::new(Vector::<2>::zeros(), limits);

@@ -311,7 +311,7 @@ fn moving_axis<const N: usize>(
 ///
 /// # Examples
 /// ```
-/// use toolglide_kinematics::verify::verify_set_points;
+/// use toolglide_verify::verify_set_points;
 /// use toolglide_kinematics::{Feedrate, Limits, Tolerance, Toolpath, Vector};
 /// let ends = [Vector::<2>::zeros(), Vector::<2>::new(10.0, 0.0)];
 /// let path = Toolpath::from_points(&ends, Feedrate::new(100.0)?, Tolerance::new(0.01)?)?;
