@@ -167,7 +167,7 @@ impl Setup {
         ['X', 'Y', 'Z'].map(|letter| self.start_of(letter).is_some())
     }
 
-    /// Which of the axes beside X, Y and Z the machine has, and where they start, degrees and mm.
+    /// The machine's axes beside X, Y and Z, each with its start position, degrees and mm.
     pub(crate) fn beside(&self) -> ([bool; 6], [f64; 6]) {
         let start = AXES_BESIDE.map(|letter| self.start_of(letter));
         (
@@ -204,7 +204,7 @@ impl Setup {
         std::array::from_fn(|axis| self.axes.get(axis).map_or('?', |axis| axis.name))
     }
 
-    /// What a length along the path of all axes is in.
+    /// Unit of a length along the path of all axes.
     pub(crate) fn path_unit(&self) -> &'static str {
         let turns = self.axes.iter().any(|axis| axis.kind == AxisKind::Rotary);
         if turns { "mm and degrees" } else { "mm" }

@@ -28,7 +28,7 @@ pub(crate) struct Parts {
     written: Written,
 }
 
-/// What a process has written.
+/// How far a process has come in naming its files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Written {
     /// No file has got its name.

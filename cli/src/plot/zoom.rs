@@ -18,7 +18,7 @@ const POINTS: u32 = 48;
 /// Steps of golden section: a step of the points that are drawn, divided by ten million.
 const NARROWING_STEPS: u32 = 34;
 
-/// What golden section keeps of an interval.
+/// Share of an interval that a golden-section step keeps.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Tolerances below this are shown in µm, mm.

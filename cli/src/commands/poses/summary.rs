@@ -175,7 +175,7 @@ impl PoseSummary {
             .collect();
     }
 
-    /// What the feedrate of moves counts that turn the tool alone.
+    /// Tells the moves that turn the tool alone, and the degrees that their feedrate counts.
     fn turning(&self) -> String {
         if self.turning_moves == 0 {
             return String::new();
