@@ -23,6 +23,16 @@ const NEAR: f64 = 1.001;
 /// Share of the time that a start and a stop take along the path that they take in any direction.
 const ANY_DIRECTION: f64 = 0.55;
 
+/// The moves of some legs.
+fn moves_of<const N: usize>(legs: &[Segment<N>]) -> impl Iterator<Item = &[Segment<N>]> {
+    legs.chunk_by(|leg, next| !leg.ends_before(next))
+}
+
+/// Least time of these legs with a rest at the end of each move.
+fn least_apart<const N: usize>(legs: &[Segment<N>]) -> f64 {
+    moves_of(legs).map(least_alone).sum()
+}
+
 /// No way from rest to rest takes less along these legs within their tolerance: inside of all turns the way is
 /// shorter by the tolerance for each radian, and speed is gained at the most as if all axes helped.
 fn least_alone<const N: usize>(legs: &[Segment<N>]) -> f64 {
@@ -146,7 +156,7 @@ impl<const N: usize> Stretches<N> {
     pub(super) fn choose(&mut self, legs: &[Segment<N>]) -> (Choice, f64) {
         if self.has_arc(legs) {
             let ideal = Ideal::of(legs);
-            let most = NEAR * (ideal.at_feedrate + ideal.stop);
+            let most = (NEAR * (ideal.at_feedrate + ideal.stop)).min(least_apart(legs));
             if legs.len() >= MIN_LEGS
                 && let Some(duration) = self.superposer.plan(legs, ideal.at_feedrate, most)
             {
@@ -167,11 +177,9 @@ impl<const N: usize> Stretches<N> {
         // afresh where the motion stops beside it.
         let several = legs.windows(2).any(|pair| pair[0].ends_before(&pair[1]));
         if several && self.has_arc(legs) {
-            let moves = || legs.chunk_by(|leg, next| !leg.ends_before(next));
-            let least: f64 = moves().map(least_alone).sum();
-            if least < by_corners {
+            if least_apart(legs) < by_corners {
                 let mut apart = 0.0;
-                for group in moves() {
+                for group in moves_of(legs) {
                     apart += self.alone(group);
                     if apart >= by_corners {
                         break;

@@ -192,9 +192,11 @@ impl<const N: usize> Spline<N> {
             let mut from = (a + b * 4.0 + c) / 6.0;
             for cut in 1..=cuts {
                 let to = at(&[a, b, c, d], cut as f64 / cuts as f64);
+                let mut since = 0.0;
                 while let Some((point, room, _)) = corners.peek()
-                    && distance_to(point, &from, &to) + sagitta <= *room
+                    && let Some(share) = enters(point, room - sagitta, [&from, &to], since)
                 {
+                    since = share;
                     corners.next();
                 }
                 from = to;
@@ -235,6 +237,29 @@ fn at<const N: usize>(controls: &[Vector<N>; 4], share: f64) -> Vector<N> {
         + c * (-3.0 * cube + 3.0 * square + 3.0 * share + 1.0)
         + d * cube)
         / 6.0
+}
+
+/// The first share of a chord, from `since` on, at which it is within a radius of a point.
+fn enters<const N: usize>(
+    point: &Vector<N>,
+    radius: f64,
+    [from, to]: [&Vector<N>; 2],
+    since: f64,
+) -> Option<f64> {
+    let (chord, offset) = (to - from, from - point);
+    if radius < 0.0 {
+        return None;
+    }
+    if (offset + chord * since).norm() <= radius {
+        return Some(since);
+    }
+    let (square, half) = (chord.norm_squared(), chord.dot(&offset));
+    let root = half * half - square * (offset.norm_squared() - radius * radius);
+    if square <= 0.0 || root < 0.0 {
+        return None;
+    }
+    let share = (-half - root.sqrt()) / square;
+    (since..=1.0).contains(&share).then_some(share)
 }
 
 /// Cuts a cubic at a share of it.
