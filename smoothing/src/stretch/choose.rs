@@ -176,18 +176,16 @@ impl<const N: usize> Stretches<N> {
         // Stops are among the choices at every corner, but not inside an arc, which begins and ends
         // afresh where the motion stops beside it.
         let several = legs.windows(2).any(|pair| pair[0].ends_before(&pair[1]));
-        if several && self.has_arc(legs) {
-            if least_apart(legs) < by_corners {
-                let mut apart = 0.0;
-                for group in moves_of(legs) {
-                    apart += self.alone(group);
-                    if apart >= by_corners {
-                        break;
-                    }
+        if several && self.has_arc(legs) && least_apart(legs) < by_corners {
+            let mut apart = 0.0;
+            for group in moves_of(legs) {
+                apart += self.alone(group);
+                if apart >= by_corners {
+                    break;
                 }
-                if apart < by_corners {
-                    return (Choice::Apart, apart);
-                }
+            }
+            if apart < by_corners {
+                return (Choice::Apart, apart);
             }
         }
         (Choice::Corners(material), by_corners)
