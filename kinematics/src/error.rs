@@ -42,6 +42,14 @@ pub enum LimitsError {
         /// One over the other, s.
         seconds: f64,
     },
+    /// A reserve must be a share.
+    #[error("reserve is {value}, but must be from 0 to {most}")]
+    Reserve {
+        /// What was given.
+        value: f64,
+        /// The largest.
+        most: f64,
+    },
     /// A limit is above [`LARGEST_QUANTITY`].
     #[error("{quantity} limit is {value}, but may be at most {LARGEST_QUANTITY:e}")]
     TooLarge {

@@ -5,6 +5,7 @@
 
 use crate::error::LimitsError;
 use crate::numeric::{LARGEST_QUANTITY, LONGEST_RAMP, MIN_ACCELERATION, MIN_QUANTITY};
+use crate::reserve::Reserve;
 use crate::vector::Vector;
 
 /// The limits of one axis.
@@ -140,6 +141,34 @@ impl<const N: usize> Limits<N> {
             scaled.jerk[axis] = limits.jerk;
         }
         Ok(scaled)
+    }
+
+    /// The limits that a plan keeps so that the executed motion has a reserve to slow down with: velocity as it is,
+    /// acceleration times `rho^2`, jerk times `rho^3`, with `rho` of the [`Reserve`].
+    ///
+    /// # Errors
+    /// [`LimitsError`] when a product is smaller than limits may be.
+    ///
+    /// # Examples
+    /// ```
+    /// use toolglide_kinematics::{Limits, Reserve};
+    /// let limits = Limits::<2>::uniform(500.0, 2_000.0, 5e4)?.reserved(Reserve::new(0.01)?)?;
+    /// assert!((limits.acceleration()[0] - 1960.2).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn reserved(&self, reserve: Reserve) -> Result<Self, LimitsError> {
+        let rho = reserve.rho();
+        let mut reserved = *self;
+        for axis in 0..N {
+            let limits = AxisLimits::new(
+                self.velocity[axis],
+                rho * rho * self.acceleration[axis],
+                rho * rho * rho * self.jerk[axis],
+            )?;
+            reserved.acceleration[axis] = limits.acceleration;
+            reserved.jerk[axis] = limits.jerk;
+        }
+        Ok(reserved)
     }
 
     /// The limits of one axis, counted from 0; `None` for an axis that there is not.

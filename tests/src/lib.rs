@@ -12,6 +12,7 @@ pub mod anything;
 pub mod bounds;
 pub mod corpus;
 pub mod course;
+pub mod executed;
 pub mod feeds;
 pub mod filtered;
 pub mod judged;
