@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
-use toolglide_kinematics::{Limits, MotionPlanner};
+use toolglide_fir::FirInterpolation;
+use toolglide_kinematics::{Limits, MotionPlanner, Trajectory};
 use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
 use toolglide_tests::course::Course;
 
@@ -81,6 +82,56 @@ fn corners_between_short_moves_wait_for_the_window_at_the_most() {
         assert!(
             first <= window + 6 && held <= window + 6,
             "window of {window}: {first} moves before the first piece, then {held} held"
+        );
+    }
+}
+
+#[test]
+fn filtered_pulses_of_long_moves_are_handed_out_after_three_moves() {
+    for turn in [90.0, 60.0, 20.0, 5.0] {
+        let course = corners(50.0, turn, 300);
+        let settings = toolglide_fir::Settings::new(limits());
+        let mut planner = FirInterpolation::new([0.0; 2].into(), &settings);
+        let (first, held) = latency(&mut planner, &course);
+        assert!(
+            first <= 3 && held <= 3,
+            "turns of {turn} degrees: {first} moves before the first piece, then {held} held"
+        );
+    }
+}
+
+/// Cycle time of two moves at a right angle, the first so long, and of moves of a length that turn by so much.
+fn filtered_time(first: f64, (length, turn_degrees): (f64, f64)) -> f64 {
+    let mut at = [first, 50.0];
+    let mut ends = vec![[first, 0.0], at];
+    for number in 0..400 {
+        let angle = f64::from(number) * turn_degrees.to_radians();
+        at = [at[0] + length * angle.cos(), at[1] + length * angle.sin()];
+        ends.push(at);
+    }
+    let course = Course::<2>::of_lines([0.0; 2], &ends, 100.0, 0.01);
+    let settings = toolglide_fir::Settings::new(limits());
+    let motion = toolglide_fir::plan(&course.toolpath(), &settings).unwrap();
+    motion.duration() - first / 100.0
+}
+
+#[test]
+fn filters_chosen_early_take_no_longer_than_those_chosen_for_more_moves() {
+    for moves in [
+        (50.0, 90.0),
+        (50.0, 5.0),
+        (30.0, 1.0),
+        (1.0, 5.0),
+        (0.2, 5.0),
+        (1.0, 90.0),
+    ] {
+        // A short move at the beginning keeps all that follows waiting.
+        let (early, late) = (filtered_time(50.0, moves), filtered_time(5.0, moves));
+        assert!(
+            early <= 1.001 * late + 0.05,
+            "moves of {} mm, turns of {} degrees: {early} s, and {late} s for more moves",
+            moves.0,
+            moves.1
         );
     }
 }

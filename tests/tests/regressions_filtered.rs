@@ -273,3 +273,19 @@ fn an_axis_that_is_a_thousand_times_slower_to_start_leaves_no_jump() {
 ] };
     holds(&course, &[[2730.12, 2927.2, 200000.0], [2730.12, 22855.5, 200000.0], [2730.12, 5.88579, 200000.0]]);
 }
+
+/// Chords of an arc with a large tolerance lie further inside than the line behind it may be off, which bounds nothing
+/// on the line.
+#[test]
+#[rustfmt::skip]
+fn an_arc_with_a_large_tolerance_leads_to_a_long_line_with_a_small_one() {
+    for tolerance in [1e-3, 1e-2, 5e-2] {
+        for end in [300.0, 5.0, 0.5] {
+            let course = Course { start: [0.0, 0.0], legs: vec![
+    go(arc([0.0, 20.0], [20.0, 20.0], [0, 1], true, 0), 100.0, 0.5),
+    go(Lead::Line([20.0 + 0.3 * end, 20.0 + end]), 100.0, tolerance),
+] };
+            holds(&course, &[[500.0, 2500.0, 2e5]; 2]);
+        }
+    }
+}

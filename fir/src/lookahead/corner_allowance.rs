@@ -15,6 +15,10 @@ use crate::pulse::Pulse;
 /// window: where half of it is on the arc, a sixth is wanted, and more with a dwell.
 const UNUSED: f64 = 1.0 / 3.0;
 
+/// Least share of the tolerance that is allowed: chords of an arc may lie further inside than a move allows that is
+/// served together with them, and then a full stop beside them is all that can be done.
+const LEAST_ALLOWED: f64 = 0.01;
+
 /// Share of the tolerance that is expected to be left unused on an arc near its ends: what two arcs that
 /// meet without a corner leave there, a little more.
 const LESS_BESIDE: f64 = 0.018;
@@ -34,12 +38,14 @@ impl<const N: usize> LookAhead<N> {
     pub(super) fn allowed(&self, corner: usize, meets_arc: bool) -> f64 {
         let (before, after) = (&self.pulses[corner], &self.pulses[corner + 1]);
         let tolerance = self.tolerance(corner);
-        let shape = self.shape(before);
         if before.smooth {
             let less = if meets_arc { LESS_BESIDE } else { 0.0 };
-            (STEADY_EXCESS - less) * tolerance + shape.outward
+            (STEADY_EXCESS - less) * tolerance + self.shape(before).outward
         } else {
-            tolerance - UNUSED * shape.sagitta.max(self.shape(after).sagitta)
+            // What is unused is a matter of the chord, which may have more than its neighbour.
+            let left = |chord: &Pulse<N>| chord.tolerance - UNUSED * self.shape(chord).sagitta;
+            let allowed = left(before).min(left(after)).min(tolerance);
+            allowed.max(LEAST_ALLOWED * tolerance)
         }
     }
 
@@ -66,7 +72,11 @@ impl<const N: usize> LookAhead<N> {
                 let at_vertex = outward.min(2.0 * inside - outward);
                 (STEADY_EXCESS * tolerance + at_vertex.min(beside()), true)
             }
-            _ => (tolerance + beside().min(0.0), true),
+            _ => {
+                let middle = |index: usize| self.pulses[index].tolerance + self.room_beside(index);
+                let allowed = middle(corner).min(middle(corner + 1)).min(tolerance);
+                (allowed.max(LEAST_ALLOWED * tolerance), true)
+            }
         }
     }
 

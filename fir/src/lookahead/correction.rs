@@ -111,8 +111,10 @@ impl<const N: usize> LookAhead<N> {
         let excess = excess.min(4.0);
         let mut anything = false;
         let first_free = self.fixed.saturating_sub(1);
+        // Behind the last pulse there is no corner.
+        let corners = self.pulses.len().saturating_sub(1);
         for (corner, contribution) in self.schedule.contributions() {
-            if corner < first_free || contribution <= least {
+            if corner < first_free || corner >= corners || contribution <= least {
                 continue;
             }
             anything = true;

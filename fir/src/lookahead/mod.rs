@@ -8,6 +8,7 @@
 //! Source: section 4.3; the bound over the whole window and what is done about it are ours. Not here:
 //! the bound itself.
 
+mod alone;
 pub(crate) mod arc_feed;
 pub(crate) mod arcs;
 pub(crate) mod bound;
@@ -89,6 +90,12 @@ pub(crate) struct LookAhead<const N: usize> {
     planned: usize,
     /// How many were not handed out, whatever they are cut into.
     legs: usize,
+    /// How many in a row, up to the last one, are alone in the filters in their middle.
+    alone: usize,
+    /// Whether the chain was chosen for moves that are alone, before much of the path was known.
+    early: bool,
+    /// What goes on behind the chain of the moves that were alone.
+    going_on: Vec<Pulse<N>>,
     /// How many came since the feedrate of the program changed.
     unchanged: usize,
     /// Whether pulses went before the first one that is kept.
@@ -131,6 +138,9 @@ impl<const N: usize> LookAhead<N> {
             fixed: 0,
             planned: 0,
             legs: 0,
+            alone: 0,
+            early: false,
+            going_on: Vec::with_capacity(capacity),
             unchanged: 0,
             underway: false,
             capped: false,
@@ -174,7 +184,10 @@ impl<const N: usize> LookAhead<N> {
         if !self.chooses() {
             self.limit(self.pulses.len() - 1);
         }
-        if self.legs >= PENDING {
+        self.count_alone();
+        if self.is_divided() {
+            self.divide(out);
+        } else if self.legs >= PENDING {
             self.go_on(out);
         }
     }
@@ -219,6 +232,8 @@ impl<const N: usize> LookAhead<N> {
         self.fixed = 0;
         self.planned = 0;
         self.legs = 0;
+        self.alone = 0;
+        self.early = false;
         self.underway = false;
         out(Command::Rest);
     }

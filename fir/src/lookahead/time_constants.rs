@@ -35,7 +35,7 @@ impl<const N: usize> LookAhead<N> {
                 long: self.chain.long(),
                 short: self.chain.short(),
             });
-        } else if !self.solve() {
+        } else if !self.solve_or_choose() {
             self.carry_out(out);
             if !self.pulses.is_empty() {
                 self.decide(out);
@@ -60,7 +60,7 @@ impl<const N: usize> LookAhead<N> {
         self.legs = self.pulses.len();
     }
 
-    fn choose(&mut self) {
+    pub(super) fn choose(&mut self) {
         self.waiting.clear();
         self.waiting.extend_from_slice(&self.pulses);
         let (mut design, mut least) = (0.0_f64, 0.0);
@@ -115,7 +115,7 @@ impl<const N: usize> LookAhead<N> {
     }
 
     /// Other filters from here on; only when nothing was handed out.
-    fn use_chain(&mut self, chain: CubicChain) {
+    pub(super) fn use_chain(&mut self, chain: CubicChain) {
         self.change = largest_change(&self.limits, &chain);
         self.per_change = self.change.map(f64::recip);
         self.chain = chain;
