@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
-use toolglide_kinematics::{Limits, Toolpath, Trajectory};
+use toolglide_kinematics::{AxisLimits, Limits, Toolpath, Trajectory};
 use toolglide_tests::course::{Course, Lead, arc, go};
 use toolglide_verify::verify;
 
@@ -80,5 +80,46 @@ fn how_long_a_motion_takes_does_not_depend_on_where_it_is() {
             "{} at {far}, {near} at 0",
             at(far)
         );
+    }
+}
+
+/// A kilometre from zero, three micrometres of a slow line do not tell its direction well enough for its velocity.
+#[test]
+fn a_slow_line_is_divided_near_its_start_without_a_jump() {
+    let start = [
+        -378_061.768_449_008_1,
+        -27_437.684_468_479_58,
+        17_852.278_690_121_74,
+    ];
+    let corner = [
+        -378_061.270_108_494_97,
+        -27_438.397_686_967_644,
+        17_853.030_398_578_9,
+    ];
+    let end = [
+        -378_061.037_374_567_53,
+        -27_439.093_390_656_275,
+        17_852.850_758_974_342,
+    ];
+    let course = Course {
+        start,
+        legs: vec![
+            go(Lead::Line(corner), 1.740_397_622_994, 0.001),
+            go(Lead::Line(end), 1e9, 0.003),
+        ],
+    };
+    let axis =
+        |velocity, acceleration, jerk| AxisLimits::new(velocity, acceleration, jerk).unwrap();
+    let limits = Limits::new([
+        axis(1_117.549_638, 14_278.365_65, 91_002.893_88),
+        axis(890.777_208, 5_026.276_282, 566_099.296),
+        axis(0.335_258_975_254_702_9, 247_255.476, 175_723_358.75),
+    ]);
+    let path = course.toolpath();
+    for method in toolglide_smoothing::Method::ALL {
+        let settings = toolglide_smoothing::Settings::new(limits).with_method(method);
+        let motion = toolglide_smoothing::plan(&path, &settings).unwrap();
+        let report = verify(&motion, &path, &limits);
+        assert!(report.passes(), "{}: {:#?}", method.name(), report.examples);
     }
 }

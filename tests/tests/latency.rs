@@ -9,7 +9,10 @@ use toolglide_tests::course::Course;
 
 /// Moves that are pushed before the first piece comes out, and the most that are held later on, counted from the
 /// move that the latest piece serves.
-fn latency(planner: &mut impl MotionPlanner<2>, course: &Course<2>) -> (usize, usize) {
+fn latency<const N: usize>(
+    planner: &mut impl MotionPlanner<N>,
+    course: &Course<N>,
+) -> (usize, usize) {
     let (mut first, mut held, mut served) = (None, 0, 0);
     for (step, number) in course.toolpath().moves().iter().zip(1..) {
         planner.push(step).unwrap();
@@ -84,6 +87,52 @@ fn corners_between_short_moves_wait_for_the_window_at_the_most() {
             "window of {window}: {first} moves before the first piece, then {held} held"
         );
     }
+}
+
+#[test]
+fn runs_of_fine_moves_wait_for_the_window_too() {
+    for window in [4, 16, 64] {
+        // Chords of 0.2 mm of a circle.
+        let course = corners(0.2, 2.0, 1000);
+        let settings = Settings::new(limits()).with_window(window);
+        let mut planner = KinematicSmoothing::new([0.0; 2].into(), &settings);
+        let (first, _) = latency(&mut planner, &course);
+        assert!(
+            first <= 2 * window + 30,
+            "window of {window}: {first} moves before the first piece"
+        );
+    }
+}
+
+#[test]
+fn time_optimal_motion_of_long_moves_is_handed_out_after_three_moves() {
+    for turn in [90.0, 60.0, 20.0] {
+        let course = corners(50.0, turn, 24);
+        let settings = toolglide_optimal::Settings::new(limits());
+        let mut planner = toolglide_optimal::TimeOptimal::new([0.0; 2].into(), &settings);
+        let (first, held) = latency(&mut planner, &course);
+        assert!(
+            first <= 3 && held <= 3,
+            "turns of {turn} degrees: {first} moves before the first piece, then {held} held"
+        );
+    }
+    // Along the edges of a cube in turn.
+    let mut at = [0.0; 3];
+    let ends: Vec<_> = (0..12)
+        .map(|number| {
+            at[number % 3] += 50.0;
+            at
+        })
+        .collect();
+    let course = Course::of_lines([0.0; 3], &ends, 100.0, 0.01);
+    let limits = Limits::uniform(500.0, 2_500.0, 2e5).unwrap();
+    let settings = toolglide_optimal::Settings::new(limits);
+    let mut planner = toolglide_optimal::TimeOptimal::new([0.0; 3].into(), &settings);
+    let (first, held) = latency(&mut planner, &course);
+    assert!(
+        first <= 3 && held <= 3,
+        "along edges: {first} moves before the first piece, then {held} held"
+    );
 }
 
 #[test]

@@ -34,9 +34,7 @@ impl<const N: usize> Stretches<N> {
         self.legs = legs;
         self.ahead = 0.0;
         // Nothing bends it.
-        self.corners.part();
-        self.corners.push(vertex_of(&first));
-        self.corners.part_cruising();
+        self.corners.push_cruising(&first);
         let after = leg.vertices[1];
         let last = after.saturating_sub(1);
         // One vertex stands for all that the leg serves.

@@ -15,7 +15,7 @@ use crate::method::Settings;
 use crate::segment::Segment;
 use crate::segment_merger::{MAX_MERGED, SegmentMerger, Vertex};
 use crate::short_segments::{Effort, ShortSegmentSmoother};
-use choose::Ideal;
+use choose::{Ideal, MIN_LEGS};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 use vertices::Vertices;
@@ -37,7 +37,7 @@ pub(crate) const LONGEST_ARC: usize = 2048;
 const MAX_VERTICES: usize = 8192;
 
 /// A stretch is planned without waiting for more of the path when it has so many legs and is longer than
-/// so many stops.
+/// so many stops; in a window of fewer corners as many legs, and stops in proportion.
 const LEGS_AHEAD: usize = 512;
 const STOPS_AHEAD: f64 = 8.0;
 
@@ -58,6 +58,8 @@ pub(crate) struct Stretches<const N: usize> {
     planned: usize,
     /// Length of the legs that have not been planned, each as a share of what a stop takes on it.
     ahead: f64,
+    /// Legs, and stops, with which a stretch is planned without waiting for more.
+    enough: (usize, f64),
     /// Whether the legs that have not been planned turn sharply inside an arc.
     coarse: bool,
     /// Whether the corners under way have turned an arc: only then may stopping be faster.
@@ -92,6 +94,7 @@ impl<const N: usize> Stretches<N> {
             superposer: ShortSegmentSmoother::new(settings.limits, MAX_LEGS + LONGEST_ARC),
             planned: 0,
             ahead: 0.0,
+            enough: enough_ahead(settings.window),
             coarse: false,
             watched: false,
             reopen: false,
@@ -301,7 +304,8 @@ impl<const N: usize> Stretches<N> {
     /// as many as can be held.
     fn is_full(&self) -> bool {
         let fresh = &self.legs[self.planned..];
-        (fresh.len() >= LEGS_AHEAD && self.ahead > STOPS_AHEAD)
+        let (legs, stops) = self.enough;
+        (fresh.len() >= legs && self.ahead > stops)
             || self.legs.len() >= MAX_LEGS
             || self.vertices.of(fresh).len() >= MAX_VERTICES
     }
@@ -333,6 +337,13 @@ impl<const N: usize> Stretches<N> {
         }
         self.legs = legs;
     }
+}
+
+/// Legs, and stops, with which a stretch is planned in a window of so many corners.
+#[allow(clippy::cast_precision_loss, reason = "a few hundred legs")]
+fn enough_ahead(window: usize) -> (usize, f64) {
+    let legs = window.clamp(MIN_LEGS, LEGS_AHEAD);
+    (legs, STOPS_AHEAD * legs as f64 / LEGS_AHEAD as f64)
 }
 
 /// Why a stretch ends.

@@ -15,12 +15,12 @@ use crate::lookahead::unroll::{MAX_PIECES, corner_between};
 use crate::lookahead::window::{Link, Window};
 use crate::method::{Method, Settings};
 use crate::segment::Segment;
-use crate::segment_merger::{MERGE_SHARE, ROUNDING_SHARE, SegmentMerger, Vertex};
+use crate::segment_merger::{MERGE_SHARE, ROUNDING_SHARE, SegmentMerger, Vertex, vertex_of};
 use division::division_of;
 pub(crate) use division::room_beside;
 use offer::overlapping_of;
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
+use toolglide_kinematics::{Limits, PathLimits, Pause, Piece, Tolerance, Vector};
 
 /// Plans the corners of a stream of vertices, from rest to rest.
 #[derive(Clone, Debug)]
@@ -29,8 +29,10 @@ pub(crate) struct Corners<const N: usize> {
     /// The last leg, or part of one, whose end is still open, and the length of the whole.
     pending: Option<Segment<N>>,
     whole: f64,
-    /// Whether the plan has been divided since it began.
+    /// Whether the plan has been divided since it began, and direction and limits of the leg on which it was: what is
+    /// left of that has the very same, whatever the rounding of the place says.
     cruises: bool,
+    course: Option<(Vector<N>, PathLimits)>,
     selections: Vec<Selection<N>>,
     windows: Vec<Window>,
     scaled: Vec<VecDeque<BlendShape>>,
@@ -65,6 +67,7 @@ impl<const N: usize> Corners<N> {
             pending: None,
             whole: 0.0,
             cruises: false,
+            course: None,
             scaled: windows
                 .iter()
                 .map(|_| VecDeque::with_capacity(burst + 2 * size + 4))
@@ -179,10 +182,20 @@ impl<const N: usize> Corners<N> {
         }
     }
 
-    /// Divides the plan where the path has come to, on a leg that is long enough before and behind it to be left at
-    /// its velocity.
-    pub(crate) fn part_cruising(&mut self) {
+    /// Takes the first part of a leg that is long enough behind it to be left at its velocity, and divides the plan at
+    /// its end.
+    pub(crate) fn push_cruising(&mut self, first: &Segment<N>) {
         self.part();
+        self.merger.push(vertex_of(first));
+        if let Some(leg) = self.merger.flush() {
+            let whole = leg.length;
+            let along = Segment {
+                direction: first.direction,
+                limits: first.limits,
+                ..leg
+            };
+            self.join(along, whole);
+        }
         self.divide();
     }
 
@@ -246,6 +259,7 @@ impl<const N: usize> Corners<N> {
         self.pending = other.pending;
         self.whole = other.whole;
         self.cruises = other.cruises;
+        self.course = other.course;
         for (window, others) in self.windows.iter_mut().zip(&other.windows) {
             window.follow(others);
         }
@@ -303,7 +317,12 @@ impl<const N: usize> Corners<N> {
     }
 
     /// Takes a leg, or a part of one of some length.
-    fn join(&mut self, leg: Segment<N>, whole: f64) {
+    fn join(&mut self, mut leg: Segment<N>, whole: f64) {
+        if self.is_cruising()
+            && let Some(course) = self.course
+        {
+            (leg.direction, leg.limits) = course;
+        }
         let link = link_of(&leg);
         let before = std::mem::replace(&mut self.whole, whole);
         match self.pending.replace(leg) {
@@ -341,6 +360,7 @@ impl<const N: usize> Corners<N> {
                 ..leg
             });
             self.cruises = true;
+            self.course = Some((leg.direction, leg.limits));
             self.offer();
         }
     }
