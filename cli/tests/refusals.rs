@@ -382,3 +382,51 @@ fn tool_poses_that_point_opposite_ways_and_no_axis_between_them() {
         refused(&folder, &program, &[&on[..], more].concat(), reason);
     }
 }
+
+#[test]
+fn a_machine_or_a_tool_table_that_is_no_file_of_text_is_named_as_what_it_is() {
+    let folder = Folder::new();
+    let program = folder.write("part.ngc", SQUARE);
+    let inside = folder.name("machines");
+    std::fs::create_dir(&inside).unwrap();
+    refused(&folder, &program, &["--machine", &inside], "it is a folder");
+    refused(
+        &folder,
+        &program,
+        &["--tool-table", &inside],
+        "it is a folder",
+    );
+    if cfg!(unix) {
+        for option in ["--machine", "--tool-table"] {
+            let reason = "/dev/zero: cannot be read: it is no regular file";
+            refused(&folder, &program, &[option, "/dev/zero"], reason);
+        }
+    }
+    let bytes = folder.write("bytes.tbl", &"\0".repeat(100_000));
+    let run = toolglide(&["plan", &program, "--tool-table", &bytes]);
+    assert_eq!(run.code, 2, "{}", run.out);
+    assert!(
+        !run.err.contains('\0') && run.err.len() < 400,
+        "a word of bytes is shown as text, and not all of it: {:?}",
+        run.err
+    );
+}
+
+#[test]
+fn programs_in_utf_16_are_named_as_such() {
+    let folder = Folder::new();
+    for ending in ["ngc", "mpf", "apt"] {
+        let program = folder.name(&format!("part.{ending}"));
+        let wide = SQUARE.encode_utf16().flat_map(u16::to_le_bytes);
+        std::fs::write(
+            &program,
+            [0xff, 0xfe].into_iter().chain(wide).collect::<Vec<u8>>(),
+        )
+        .unwrap();
+        let run = toolglide(&["check", &program]);
+        assert_eq!(run.code, 2, "{ending}: {}", run.out);
+        let told = run.err.matches("UTF-16").count();
+        assert!((1..=2).contains(&told), "{ending}: {}", run.err);
+        assert!(!run.err.contains("binary"), "{ending}: {}", run.err);
+    }
+}

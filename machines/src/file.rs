@@ -18,7 +18,16 @@ pub fn load(file: &Path) -> Result<MachineConfig, MachineError> {
         file: file.to_owned(),
         reason,
     };
-    let size = std::fs::metadata(file).map_err(read)?.len();
+    let found = std::fs::metadata(file).map_err(read)?;
+    if !found.is_file() {
+        let what = if found.is_dir() {
+            "it is a folder"
+        } else {
+            "it is no regular file, but a pipe or a device"
+        };
+        return Err(read(std::io::Error::other(what)));
+    }
+    let size = found.len();
     if size > LARGEST_FILE {
         return Err(MachineError::InFile {
             file: file.to_owned(),

@@ -54,11 +54,12 @@ pub(crate) fn no_way(word: &str, span: Span) -> Fault {
     Fault::new(span, Reason::WordNotSupported { word, what })
 }
 
-/// A refusal of an address with a number of its own, as in `A3=`.
+/// A refusal of an address with a number of its own, as in `A2=`.
 pub(crate) fn extended_address(word: &str, span: Span) -> Fault {
     let what = match word {
-        "A3=" | "B3=" | "C3=" | "A2=" | "B2=" | "C2=" | "A4=" | "B4=" | "C4=" | "A5=" | "B5="
-        | "C5=" => "orientations by vectors and angles",
+        "A2=" | "B2=" | "C2=" | "A4=" | "B4=" | "C4=" | "A5=" | "B5=" | "C5=" => {
+            "orientations by angles and by vectors of surfaces"
+        }
         "I1=" | "J1=" | "K1=" => "arcs by a point on them",
         _ => "addresses of several channels, axes and spindles",
     };

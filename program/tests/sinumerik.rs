@@ -123,6 +123,71 @@ fn rotary_words_turn_axes_by_oriaxes_and_point_the_tool_by_orivect_and_oriplane(
 }
 
 #[test]
+fn vectors_point_the_tool_until_rotary_words_do() {
+    let text = "TRAORI\nG1 X1 A3=0.6 B3=0 C3=.8 F600\nX2\nA3=2 C3=0\nX3 A3=AC(1)\n";
+    assert!(try_read(text).is_err(), "AC() of a component");
+    let text = "TRAORI\nG1 X1 A3=0.6 B3=0 C3=.8 F600\nX2\nA3=2 C3=0\nC30\nTRAFOOF\nX5\nA0 B0 C0\n";
+    let moves = try_read(text).unwrap();
+    let tools: Vec<Option<[f64; 3]>> = moves
+        .iter()
+        .map(|step| match step.end() {
+            PoseEnd::Pose(pose) => Some(pose.orientation().into()),
+            _ => None,
+        })
+        .collect();
+    let leaning = Some([0.6, 0.0, 0.8]);
+    let expected = [leaning, leaning, Some([1.0, 0.0, 0.0]), None, None, None];
+    assert_eq!(tools, expected, "where the tool points");
+    let held: Vec<[bool; 3]> = moves.iter().map(PoseMove::rotary_held).collect();
+    assert_eq!(held[3], [true, true, false], "C has a word");
+    assert_eq!(held[4], [true, true, false], "nothing new is said");
+    assert_eq!(held[5], [false; 3], "all have words");
+}
+
+#[test]
+fn a_vector_is_one_of_the_frame_and_turns_evenly_along_an_arc() {
+    let moves = try_read("TRAORI\nROT Z90\nG1 X1 A3=1 F600\n").unwrap();
+    let tool = |step: &PoseMove| match step.end() {
+        PoseEnd::Pose(pose) => pose.orientation(),
+        other => panic!("{other:?}"),
+    };
+    assert!((tool(&moves[0])[1] - 1.0).abs() < CLOSE, "{:?}", moves[0]);
+    let text = "TRAORI\nG1 X0 Y0 C3=1 F600\nG2 X10 Y0 I5 J0 A3=1 C3=1\n";
+    let moves = try_read(text).unwrap();
+    let lean: Vec<f64> = moves[1..].iter().map(|step| tool(step)[0].asin()).collect();
+    let share = std::f64::consts::FRAC_PI_4 / f64::from(u32::try_from(lean.len()).unwrap());
+    assert!(lean.len() > 10, "{} chords", lean.len());
+    let mut before = 0.0;
+    for (chord, lean) in lean.iter().enumerate() {
+        assert!(
+            (lean - before - share).abs() < 1e-9,
+            "chord {chord}: {lean}"
+        );
+        before = *lean;
+    }
+}
+
+#[test]
+fn vectors_are_refused_where_they_say_nothing_certain() {
+    for (text, what) in [
+        ("G1 X1 A3=1 F600\n", "need TRAORI"),
+        ("TRAORI\nG1 X1 A3=0 F600\n", "length of the vector"),
+        ("TRAORI\nG1 X1 A3=1 C30 F600\n", "beside words A, B or C"),
+        ("TRAORI\nG1 X1 A3=1 A3=2 F600\n", "written twice"),
+        ("TRAORI\nG1 X1 A3=1 F600\nC=IC(3)\n", "write its place"),
+        ("TRAORI\nG1 X1 A3=1 F600\nC=DC(3)\n", "write its place"),
+        (
+            "TRAORI\nG1 X0 Y0 C0 F600\nG2 X10 I5 J0 A3=1\n",
+            "end of an arc",
+        ),
+        ("TRAORI\nG1 X1 A2=1 F600\n", "orientations by angles"),
+    ] {
+        let refused = try_read(text).unwrap_err().to_string();
+        assert!(refused.contains(what), "{text}: {refused}");
+    }
+}
+
+#[test]
 fn cycle832_sets_the_tolerance_and_ends_it() {
     let text = "G60\nG1 X1 F600\nCYCLE832(.02,1,1)\nX2\nCYCLE832()\nX3\n";
     let moves = try_read(text).unwrap();

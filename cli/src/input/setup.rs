@@ -4,13 +4,14 @@
 
 use crate::error::CliError;
 use crate::input::args::JobArgs;
+use crate::input::source::kind_of;
 use crate::input::values::PerAxis;
 use std::path::Path;
 use toolglide_kinematics::{
     Axis, AxisKind, AxisLimits, AxisVector, Limits, MachineKinematics, SamplePeriod, Tolerance,
     ToolPose, Vector,
 };
-use toolglide_machines::{MachineConfig, ModeConfig, find, is_plain, load};
+use toolglide_machines::{MachineConfig, MachineError, ModeConfig, find, is_plain, load};
 use toolglide_program::{AXES_BESIDE, ToolTable};
 
 /// Shortest period that is taken, s: below it a file of set-points has no end worth waiting for.
@@ -52,7 +53,13 @@ pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinem
     let path = Path::new(name);
     let is_file = path.extension().is_some_and(|ending| ending == "toml") || path.is_file();
     if !is_file {
-        let model = find(name)?;
+        let model = find(name).map_err(|unknown| match std::fs::metadata(path) {
+            Ok(found) => MachineError::Read {
+                file: path.to_owned(),
+                reason: std::io::Error::other(kind_of(&found)),
+            },
+            Err(_) => unknown,
+        })?;
         let config = (model.preset)();
         let machine = (model.build)(&config)?;
         return Ok((config, machine));
@@ -62,7 +69,7 @@ pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinem
         .and_then(|model| (model.build)(&config))
         .and_then(|machine| config.modes().map(|_| machine))
         .and_then(|machine| config.reference_points().map(|_| machine))
-        .map_err(|reason| toolglide_machines::MachineError::InFile {
+        .map_err(|reason| MachineError::InFile {
             file: path.to_owned(),
             reason: Box::new(reason),
         })?;

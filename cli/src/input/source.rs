@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::output::progress::Watched;
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use toolglide_program::{ArithmeticError, Language, Poses, Program, ToolTable};
@@ -61,10 +61,19 @@ pub(crate) fn open_file(path: &Path) -> Result<(File, Option<u64>), CliError> {
     };
     let found = std::fs::metadata(path).map_err(refuse)?;
     if found.is_dir() {
-        return Err(refuse(std::io::Error::other("it is a folder")));
+        return Err(refuse(std::io::Error::other(kind_of(&found))));
     }
     let file = File::open(path).map_err(refuse)?;
     Ok((file, found.is_file().then_some(found.len())))
+}
+
+/// Says of a file that is no regular one what it is.
+pub(crate) fn kind_of(found: &Metadata) -> &'static str {
+    if found.is_dir() {
+        "it is a folder"
+    } else {
+        "it is no regular file, but a pipe or a device"
+    }
 }
 
 /// The language of a program, by the first bytes of its file; standard input, which can be read only
@@ -94,13 +103,26 @@ pub(crate) fn tools(path: Option<&Path>) -> Result<ToolTable, CliError> {
     let Some(path) = path else {
         return Ok(ToolTable::new());
     };
+    let refuse = |reason| CliError::Read {
+        file: path.to_owned(),
+        reason,
+    };
+    // A pipe would be waited for, and a device may have no end.
+    let found = std::fs::metadata(path).map_err(refuse)?;
+    if !found.is_file() {
+        return Err(refuse(std::io::Error::other(kind_of(&found))));
+    }
+    if found.len() > LARGEST_FILE {
+        let large = format!(
+            "it has {} bytes, but at most {LARGEST_FILE} are read",
+            found.len()
+        );
+        return Err(refuse(std::io::Error::other(large)));
+    }
     let (file, _) = open_file(path)?;
     let mut text = String::new();
     let read = file.take(LARGEST_FILE).read_to_string(&mut text);
-    read.map_err(|reason| CliError::Read {
-        file: path.to_owned(),
-        reason,
-    })?;
+    read.map_err(refuse)?;
     ToolTable::parse(&text).map_err(|reason| CliError::ToolTable {
         file: path.to_owned(),
         reason,

@@ -110,7 +110,7 @@ impl<'m> Resolver<'m> {
                 tip,
                 great_circle,
             } if tip || !has_linear => {
-                let near = self.words(index, None, rotary, next.secondary())?;
+                let near = self.words(index, None, rotary, next)?;
                 if !great_circle && let Some(axes) = self.placed(&linear, &near).map_err(machine)? {
                     return self.rotary(index, (linear, axes), next.feed(), leg);
                 }
@@ -128,7 +128,7 @@ impl<'m> Resolver<'m> {
                 (pose, axes)
             }
             PoseEnd::Axes { linear, rotary, .. } => {
-                let end = self.words(index, Some(linear), rotary, next.secondary())?;
+                let end = self.words(index, Some(linear), rotary, next)?;
                 self.check_travel(&end).map_err(machine)?;
                 let start = self.at;
                 let turns = self.turns(&end);
@@ -299,7 +299,7 @@ impl<'m> Resolver<'m> {
         index: u32,
         linear: Option<Vector<3>>,
         rotary: [f64; 3],
-        secondary: [f64; 3],
+        next: &PoseMove,
     ) -> Result<AxisVector, FiveAxisError> {
         let axes = self.machine.axes();
         let mut positions = self.at;
@@ -307,8 +307,10 @@ impl<'m> Resolver<'m> {
         if let Some(linear) = linear {
             words.extend(['X', 'Y', 'Z'].into_iter().zip(linear.iter().copied()));
         }
-        words.extend(['A', 'B', 'C'].into_iter().zip(rotary));
-        words.extend(['U', 'V', 'W'].into_iter().zip(secondary));
+        let turning = ['A', 'B', 'C'].into_iter().zip(rotary);
+        let turning = turning.zip(next.rotary_held());
+        words.extend(turning.filter_map(|(word, held)| (!held).then_some(word)));
+        words.extend(['U', 'V', 'W'].into_iter().zip(next.secondary()));
         for (letter, value) in words {
             match axes.iter().position(|axis| axis.name == letter) {
                 Some(axis) => positions[axis] = value,

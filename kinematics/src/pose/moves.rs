@@ -55,6 +55,7 @@ pub struct PoseMove {
     stop: bool,
     line: u32,
     secondary: [f64; 3],
+    held: [bool; 3],
 }
 
 impl PoseMove {
@@ -117,6 +118,7 @@ impl PoseMove {
             stop,
             line: 0,
             secondary: [0.0; 3],
+            held: [false; 3],
         })
     }
 
@@ -130,6 +132,20 @@ impl PoseMove {
         }
         self.secondary = words;
         Ok(self)
+    }
+
+    /// The same move, at whose end some of the rotary axes A, B and C are where they were before, whatever their words
+    /// say: a tool pose has put them there.
+    #[must_use]
+    pub fn with_rotary_held(mut self, axes: [bool; 3]) -> Self {
+        self.held = axes;
+        self
+    }
+
+    /// Which of the rotary axes A, B and C stay where they are, for words of axes.
+    #[must_use]
+    pub fn rotary_held(&self) -> [bool; 3] {
+        self.held
     }
 
     /// Words U, V and W, mm; those that were never programmed are 0.

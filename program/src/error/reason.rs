@@ -31,6 +31,9 @@ pub enum Reason {
         /// Largest length of a line, bytes.
         bound: usize,
     },
+    /// A file whose characters have two bytes.
+    #[error("this is a text in UTF-16; text is read in ASCII and UTF-8, so save it as one of them")]
+    Utf16,
     /// A whole file in a language that is known, and not read.
     #[error("this is {language}, which is not read")]
     LanguageNotRead {

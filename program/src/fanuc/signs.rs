@@ -1,7 +1,7 @@
 //! Recognises programs for FANUC and Haas by what no program for LinuxCNC can have.
 //!
 //! Signs are statements of macro B (`IF [`, `WHILE [`, `GOTO 1`, `DO1`, `END1`, `THEN`), codes that LinuxCNC
-//! refuses (`G65 P`, `G68 R`, `G54.1 P`, `G187`, `M97 P` and others), `,R` and `,C`, and `M98 P31001` where
+//! refuses (`G65 P`, `G4 X`, `G68 R`, `G54.1 P`, `G187`, `M97 P` and others), `,R` and `,C`, and `M98 P31001` where
 //! program 1001 is in the file. What both have, such as `#1=` and `M98 P1000`, is no sign.
 
 use crate::block::code::Code;
@@ -158,8 +158,12 @@ fn has_sign(line: &[u8], calls: &mut Vec<u32>) -> bool {
     }
     let asks =
         |wanted: &[u8]| wanted.is_empty() || letters.iter().any(|letter| wanted.contains(letter));
+    // A dwell that LinuxCNC wants `P` for.
+    let dwells = codes.contains(&40) && asks(b"XU") && !asks(b"P");
     let mode = codes.contains(&50) && asks(b"P") && !asks(b"XYIJ");
-    mode || codes.contains(&9700) && asks(b"P")
+    dwells
+        || mode
+        || codes.contains(&9700) && asks(b"P")
         || CODES
             .iter()
             .any(|(code, wanted)| codes.contains(code) && asks(wanted))
@@ -182,6 +186,8 @@ mod tests {
             "G0 G90 G54.1 P3 X0",
             "G154 P2",
             "M97 P100",
+            "G4 X2.",
+            "N5 G04 U1.5",
             "G5 P10000",
             "G05.1 Q1",
             "G1 X10,R2",
@@ -197,6 +203,9 @@ mod tests {
             "G5 I0 J3 P0 Q-3 X1 Y1",
             "G5.1 X10 I5 J10",
             "M98 P31001",
+            "G4 P2 X1",
+            "G4 P0.5\nG1 X4",
+            "G4 F2",
             "; IF [a] GOTO 1",
             "(G65 P1)",
             "PARTNO/G65, P1",

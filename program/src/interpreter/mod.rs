@@ -30,6 +30,7 @@ use crate::error::{Fault, Notice, Remark};
 use crate::expression::parameters::Parameters;
 use crate::printer::Printer;
 use crate::settings::Settings;
+use crate::sinumerik::tool_vector::ToolVector;
 use crate::text::lexer::Assignment;
 use crate::text::place::Span;
 use modal::Modal;
@@ -67,6 +68,8 @@ pub(crate) struct Interpreter {
     pub(crate) tip: bool,
     /// Whether the tool turns along a great circle to where rotary words point it.
     pub(crate) great_circle: bool,
+    /// Where a vector points the tool.
+    pub(crate) tool_vector: ToolVector,
     pub(crate) compensation: Option<Compensation>,
     /// Whether compensation begins on the normal of its second move, as for Sinumerik and FANUC.
     pub(crate) leads_to_normal: bool,
@@ -109,6 +112,7 @@ impl Interpreter {
             others: Others::default(),
             tip: false,
             great_circle: false,
+            tool_vector: ToolVector::default(),
             compensation: None,
             leads_to_normal: false,
             fanuc: false,

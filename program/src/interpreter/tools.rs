@@ -10,6 +10,9 @@ use toolglide_kinematics::Vector;
 /// Largest number of a tool.
 pub(crate) const LARGEST_TOOL: u32 = 999_999;
 
+/// Characters of an offending word that are shown.
+const LONGEST_SHOWN: usize = 40;
+
 /// One tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tool {
@@ -122,7 +125,10 @@ fn entry(words: &str) -> Result<(u32, Tool), String> {
             .parse()
             .ok()
             .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| format!("\"{word}\" is no letter with a number"))?;
+            .ok_or_else(|| {
+                let shown: String = word.escape_debug().take(LONGEST_SHOWN).collect();
+                format!("\"{shown}\" is no letter with a number")
+            })?;
         match letter {
             'T' if (0.0..=f64::from(LARGEST_TOOL)).contains(&value) && value.fract() == 0.0 => {
                 #[allow(

@@ -9,12 +9,14 @@ use crate::block::codes::{FeedMode, Motion};
 use crate::curves::chords::count;
 use crate::curves::splines::CHORD_SHARE;
 use crate::error::ProgramError;
+use crate::error::reason::Reason;
 use crate::interpreter::secondary_axes::{OTHERS, ROTARY};
 use crate::program::Program;
 use std::collections::VecDeque;
 use std::io::BufRead;
 use toolglide_kinematics::{
-    Feedrate, Move, Path, PoseEnd, PoseFeed, PoseMove, Tolerance, ToolpathError, Vector,
+    Feedrate, GreatCircle, Move, Path, PoseEnd, PoseFeed, PoseMove, Tolerance, ToolPose,
+    ToolpathError, Vector,
 };
 
 /// A program whose moves are those of a machine with rotary axes.
@@ -31,6 +33,10 @@ struct Words {
     tip: bool,
     /// Whether those of rotary axes say where the tool points, and not how the axes turn.
     great_circle: bool,
+    /// Where vectors point the tool before and after the block.
+    directions: Option<[Vector<3>; 2]>,
+    /// Rotary axes that are where vectors have put them.
+    held: [bool; ROTARY],
 }
 
 /// What a block says about all its moves.
@@ -57,7 +63,12 @@ impl<R: BufRead> AxisWords<R> {
     fn read_line(&mut self) -> Result<(), ProgramError> {
         let from = self.program.lowering.others.at;
         let start = self.program.lowering.position;
+        let before = self.program.lowering.tool_vector.direction;
         self.program.read_line()?;
+        let directions = match self.directions(before) {
+            Ok(directions) => directions,
+            Err(reason) => return Err(self.program.refuse(reason)),
+        };
         let state = &self.program.lowering;
         let rate = self.program.block.get(b'F');
         let feeds = state.modal.motion != Motion::Rapid;
@@ -73,6 +84,8 @@ impl<R: BufRead> AxisWords<R> {
         let words = Words {
             tip: state.tip,
             great_circle: state.great_circle,
+            directions,
+            held: state.tool_vector.held,
         };
         let turning = block
             .turning
@@ -91,6 +104,46 @@ impl<R: BufRead> AxisWords<R> {
         }
         Ok(())
     }
+}
+
+impl<R: BufRead> AxisWords<R> {
+    /// Where the tool points before and after the line that was read, where vectors say so.
+    fn directions(&self, before: Option<Vector<3>>) -> Result<Option<[Vector<3>; 2]>, Reason> {
+        let Some(direction) = self.program.lowering.tool_vector.direction else {
+            return Ok(None);
+        };
+        let arc = |step: &Move<3>| matches!(step.path(), Path::Arc(_));
+        if before.is_none() && self.program.waiting.iter().any(arc) {
+            let word = "A3= B3= C3=".into();
+            let what =
+                "a vector at the end of an arc at whose beginning rotary words point the tool";
+            return Err(Reason::WordNotSupported { word, what });
+        }
+        Ok(Some([before.unwrap_or(direction), direction]))
+    }
+}
+
+/// The end of a move at a share of its block.
+fn end_at(
+    words: &Words,
+    linear: Vector<3>,
+    rotary: [f64; ROTARY],
+    share: f64,
+) -> Result<PoseEnd, ToolpathError> {
+    Ok(match words.directions {
+        Some([_, last]) if share >= 1.0 => PoseEnd::Pose(ToolPose::new(linear, last)?),
+        Some(directions) => {
+            let [start, end] = directions.map(|way| ToolPose::new(linear, way));
+            let turn = GreatCircle::between(&start?, &end?)?;
+            PoseEnd::Pose(ToolPose::new(linear, turn.at(share))?)
+        }
+        None => PoseEnd::Axes {
+            linear,
+            rotary,
+            tip: words.tip,
+            great_circle: words.great_circle,
+        },
+    })
 }
 
 /// Appends the poses of a move that begins at `start`.
@@ -112,6 +165,7 @@ fn poses(
     let finished = |end, feed, tolerance, share| -> Result<PoseMove, ToolpathError> {
         PoseMove::new(end, feed, tolerance)?
             .from_line(step.line())
+            .with_rotary_held(words.held)
             .with_secondary(slid(share))
     };
     match step.path() {
@@ -131,12 +185,7 @@ fn poses(
             };
             for chord in 1..=chords {
                 let share = f64::from(chord) / f64::from(chords);
-                let end = PoseEnd::Axes {
-                    linear: shown(arc.point(share)),
-                    rotary: at_share(share),
-                    tip: words.tip,
-                    great_circle: words.great_circle,
-                };
+                let end = end_at(&words, shown(arc.point(share)), at_share(share), share)?;
                 let next = finished(end, feed, kept, share)?;
                 let stops = chord == chords && step.stops();
                 into.push_back(if stops { next.with_exact_stop() } else { next });
@@ -160,12 +209,7 @@ fn poses(
                     _ => speed(step.feedrate()),
                 },
             };
-            let end = PoseEnd::Axes {
-                linear: shown(there),
-                rotary: end_turn,
-                tip: words.tip,
-                great_circle: words.great_circle,
-            };
+            let end = end_at(&words, shown(there), end_turn, 1.0)?;
             let next = finished(end, feed, step.tolerance(), 1.0)?;
             into.push_back(if step.stops() {
                 next.with_exact_stop()

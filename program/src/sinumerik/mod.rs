@@ -9,6 +9,7 @@ pub(crate) mod flow;
 pub(crate) mod frame;
 pub(crate) mod line;
 pub(crate) mod reader;
+pub(crate) mod tool_vector;
 pub(crate) mod value;
 pub(crate) mod words;
 
@@ -47,6 +48,8 @@ pub(crate) struct Line<'a> {
     pub(crate) frame: Option<(FrameWord, Span)>,
     /// Words X, Y and Z of a frame.
     pub(crate) offsets: [Option<f64>; 3],
+    /// Components `A3=` `B3=` `C3=` of where the tool points.
+    pub(crate) vector: [Option<(f64, Span)>; 3],
     pub(crate) dwell: bool,
 }
 
@@ -66,6 +69,7 @@ impl Sinumerik {
             remarks,
             frame: None,
             offsets: [None; 3],
+            vector: [None; 3],
             dwell: false,
         };
         while let Some(start) = reader.next_item()? {
@@ -81,7 +85,8 @@ impl Sinumerik {
                 _ => line.word(&mut reader, &name, start)?,
             }
         }
-        line.set_frame()
+        line.set_frame()?;
+        line.set_vector()
     }
 
     /// The number of a tool with a name: that of the table, or one by order that the table has not.
@@ -145,6 +150,10 @@ impl Line<'_> {
                 self.add(letter, value, span)
             };
         }
+        if matches!(letter, b'A' | b'B' | b'C') && reader.extension_is(3) {
+            let value = reader.expression(self.state)?;
+            return self.add_component(letter, value, Span::new(start, reader.at));
+        }
         let (value, way) = reader.address_value(self.state, start)?;
         let span = Span::new(start, reader.at);
         if reader.peek() == Some(b'=') {
@@ -189,7 +198,10 @@ impl Line<'_> {
             "DEF" => return self.define(reader),
             "SUPA" => return self.add(b'G', 53.0, span),
             "TRAORI" => self.state.tip = true,
-            "TRAFOOF" => self.state.tip = false,
+            "TRAFOOF" => {
+                self.state.tip = false;
+                self.state.tool_vector.release();
+            }
             "ORIAXES" => self.state.great_circle = false,
             "ORIVECT" | "ORIPLANE" => self.state.great_circle = true,
             "TRANS" | "ATRANS" => {

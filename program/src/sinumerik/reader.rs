@@ -112,6 +112,19 @@ impl<'a> Reader<'a> {
         Ok(None)
     }
 
+    /// Whether a digit and `=` stand here, as in `A3=`; they are read then.
+    pub(crate) fn extension_is(&mut self, digit: u8) -> bool {
+        let start = self.at;
+        if self.peek() == Some(b'0' + digit) {
+            self.at += 1;
+            if self.equals_follows() {
+                return true;
+            }
+        }
+        self.at = start;
+        false
+    }
+
     /// A text in quotes behind `=`.
     pub(crate) fn quoted_after_equals(&mut self) -> Option<String> {
         let rest = &self.line[self.at..];

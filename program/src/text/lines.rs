@@ -57,6 +57,9 @@ impl<R: BufRead> Lines<R> {
                 });
             }
         }
+        if self.count == 1 && is_utf_16(&self.buffer) {
+            return Err(Reason::Utf16);
+        }
         if self.buffer.last() == Some(&b'\n') {
             self.buffer.pop();
         }
@@ -72,6 +75,17 @@ impl<R: BufRead> Lines<R> {
             });
         }
         Ok(true)
+    }
+}
+
+/// Whether a text begins with the mark of UTF-16, or with a letter that has its zero byte beside it.
+fn is_utf_16(beginning: &[u8]) -> bool {
+    match *beginning {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => true,
+        [0, letter, 0, next, ..] | [letter, 0, next, 0, ..] => {
+            letter.is_ascii() && letter != 0 && next.is_ascii() && next != 0
+        }
+        _ => false,
     }
 }
 
@@ -92,6 +106,28 @@ mod tests {
     fn line_ends_of_either_kind_and_the_byte_order_mark_are_dropped() {
         let found = all(b"\xef\xbb\xbfG0\r\nG1\n\nG2");
         assert_eq!(found, [&b"G0"[..], b"G1", b"", b"G2"], "lines");
+    }
+
+    #[test]
+    fn a_text_in_utf_16_is_named_as_one_and_other_bytes_are_not() {
+        for text in [
+            &b"\xff\xfeG\0"[..],
+            b"\xfe\xff\0G",
+            b"G\x002\x001\0",
+            b"\0G\x002\x001",
+        ] {
+            let refused = Lines::new(text).advance();
+            assert_eq!(refused, Err(Reason::Utf16), "{text:?}");
+        }
+        for text in [
+            &b"\0\0\0\0"[..],
+            b"G\0\0\0",
+            b"G21\0",
+            b"\xff",
+            b"\xef\xbb\xbfG\0",
+        ] {
+            assert_eq!(all(text).len(), 1, "{text:?}");
+        }
     }
 
     #[test]
