@@ -7,6 +7,7 @@
 use crate::error::CliError;
 use crate::input::travel::{OnAxes, Travel};
 use crate::output::csv_writer::SetPoints;
+use crate::output::page::Recording;
 use crate::plot::Plot;
 use std::io::BufRead;
 use std::time::{Duration, Instant};
@@ -69,6 +70,7 @@ pub(crate) struct Pipeline<'a, R, const N: usize> {
     pub(crate) judge: Judge<N>,
     pub(crate) set_points: SetPoints<'a, N>,
     pub(crate) plot: Option<Plot<N>>,
+    pub(crate) recording: Option<Recording<N>>,
 }
 
 /// What came out.
@@ -79,6 +81,7 @@ pub(crate) struct Outcome<R, const N: usize> {
     pub(crate) planning_time: Duration,
     pub(crate) windows: Option<WindowTally>,
     pub(crate) plot: Option<Plot<N>>,
+    pub(crate) recording: Option<Recording<N>>,
 }
 
 impl<R: BufRead, const N: usize> Pipeline<'_, R, N>
@@ -96,10 +99,16 @@ where
                     plot.expect(next);
                 }
             }
-            lane.run(&batch, !more, &self.moves.name, |piece| {
+            if let Some(recording) = &mut self.recording {
+                recording.expect(&batch);
+            }
+            lane.run(&batch, !more, &self.moves.name, |piece, deviation| {
                 self.set_points.observe(piece)?;
                 if let Some(plot) = &mut self.plot {
                     plot.observe(piece);
+                }
+                if let Some(recording) = &mut self.recording {
+                    recording.observe(0, piece, deviation);
                 }
                 Ok(())
             })?;
@@ -116,6 +125,7 @@ where
             planning_time,
             windows,
             plot: self.plot,
+            recording: self.recording,
         })
     }
 }
@@ -147,13 +157,14 @@ impl<const N: usize> Lane<N> {
 
     /// Plans and judges a batch of moves; after the `last` one the motion comes to rest.
     ///
-    /// `program` is the name of the program in refusals; `take` sees every piece.
+    /// `program` is the name of the program in refusals; `take` sees every piece, with its largest distance from
+    /// the path where the judge measures each.
     pub(crate) fn run(
         &mut self,
         batch: &[Move<N>],
         last: bool,
         program: &str,
-        mut take: impl FnMut(&Piece<N>) -> Result<(), CliError>,
+        mut take: impl FnMut(&Piece<N>, f64) -> Result<(), CliError>,
     ) -> Result<(), CliError> {
         for next in batch {
             self.judge.expect(next).map_err(|reason| CliError::Line {
@@ -170,7 +181,8 @@ impl<const N: usize> Lane<N> {
             self.planning_time += begin.elapsed();
             for piece in self.pieces.drain(..) {
                 self.judge.observe(&piece);
-                take(&piece)?;
+                let deviation = self.judge.last_deviation().map_or(0.0, |found| found[0]);
+                take(&piece, deviation)?;
             }
         }
         Ok(())

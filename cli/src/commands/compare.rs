@@ -11,7 +11,9 @@ use crate::input::source::Source;
 use crate::input::travel::{OnAxes, by_axes};
 use crate::methods::{EXACT_STOP, Tuning, chosen, planner};
 use crate::output::comparison::{Comparison, MethodRow};
+use crate::output::files::OutputFile;
 use crate::output::output_files::Drawing;
+use crate::output::page::{PageFile, Recording};
 use crate::output::report::show;
 use crate::pipeline::Lane;
 use crate::plot::{Caption, Feeds};
@@ -44,9 +46,21 @@ where
     let chosen = chosen(&args.methods);
     let tuning = Tuning::of(&args.tuning, setup)?;
     let (start, limits) = (setup.start::<N>(), setup.limits::<N>());
+    let page = PageFile::begin(args.report.as_deref(), &args.job)?;
+    let mut recording = page
+        .is_some()
+        .then(|| Recording::new(start, limits, chosen.len()));
+    let measured = page.is_some();
+    let judge = || {
+        let judge = Judge::new(start, limits);
+        if measured {
+            judge.measuring_each()
+        } else {
+            judge
+        }
+    };
     let lane = |method: &str| {
-        planner(method, start, limits, &tuning)
-            .map(|planner| Lane::new(planner, Judge::new(start, limits)))
+        planner(method, start, limits, &tuning).map(|planner| Lane::new(planner, judge()))
     };
     let mut lanes = chosen
         .iter()
@@ -65,8 +79,14 @@ where
         if let Some(feeds) = &mut feeds {
             batch.iter().for_each(|next| feeds.expect(next));
         }
+        if let Some(recording) = &mut recording {
+            recording.expect(&batch);
+        }
         for (index, lane) in lanes.iter_mut().enumerate() {
-            lane.run(&batch, !more, &name, |piece| {
+            lane.run(&batch, !more, &name, |piece, deviation| {
+                if let Some(recording) = &mut recording {
+                    recording.observe(index, piece, deviation);
+                }
                 if let Some(feeds) = &mut feeds {
                     feeds.observe(index, piece);
                 }
@@ -96,6 +116,12 @@ where
         };
         drawing.write(&feeds.draw(&caption))?;
         drawing.commit()?;
+    }
+    if let (Some(mut page), Some(recording)) = (page, recording) {
+        let judged = chosen.iter().zip(&results);
+        let judged = judged.map(|(method, (report, _))| (method.as_str(), report));
+        page.write(&name, setup, recording, judged)?;
+        OutputFile::commit([page.file])?;
     }
     show(&comparison, args.job.json, out, err)
 }

@@ -11,6 +11,7 @@ use crate::input::travel::{OnAxes, Travel, by_axes};
 use crate::methods::{METHODS, Tuning, planner};
 use crate::output::csv_writer::SetPoints;
 use crate::output::output_files::PlanFiles;
+use crate::output::page::Recording;
 use crate::output::report::{show, show_beside_rows};
 use crate::output::summary::{Summary, clock};
 use crate::pipeline::{Moves, Pipeline};
@@ -90,13 +91,19 @@ where
     let limits = setup.limits::<N>();
     let tuning = Tuning::of(&args.tuning, setup)?;
     let drawn = files.drawing.is_some();
+    let recorded = files.page.is_some();
     let destination = files.rows.destination(out);
     let outcome = Pipeline {
         moves: moves(&args.job, setup, source)?,
         planner: planner(method, start, limits, &tuning)?,
-        judge: Judge::new(start, limits),
+        judge: if recorded {
+            Judge::new(start, limits).measuring_each()
+        } else {
+            Judge::new(start, limits)
+        },
         set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
         plot: drawn.then(|| Plot::new(start, limits, setup.letters())),
+        recording: recorded.then(|| Recording::new(start, limits, 1)),
     }
     .run()?;
     let blocks = outcome.program.program().blocks();
@@ -108,6 +115,9 @@ where
     warn(outcome.program.program(), err);
     if let (Some(drawing), Some(plot)) = (&mut files.drawing, outcome.plot) {
         drawing.write(&plot.draw(&caption(&summary)))?;
+    }
+    if let (Some(page), Some(recording)) = (&mut files.page, outcome.recording) {
+        page.write(&name, setup, recording, [(method, &outcome.report)])?;
     }
     if files.commit()? {
         return show_beside_rows(&summary, err);

@@ -165,7 +165,7 @@ where
     loop {
         let more = moves.fill(&mut batch)?;
         for (lane, oscillators) in &mut lanes {
-            lane.run(&batch, !more, &name, |piece| {
+            lane.run(&batch, !more, &name, |piece, _| {
                 oscillators.pass(piece);
                 Ok(())
             })?;

@@ -150,6 +150,9 @@ pub(crate) struct PlanArgs {
     /// Draw the motion; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
+    /// Write a page about the motion that opens from disk: path in 3-D, charts, program, where the time goes.
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
 }
 
 /// What to compare.
@@ -167,6 +170,9 @@ pub(crate) struct CompareArgs {
     /// Draw the feedrates of the methods; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
+    /// Write a page about the motions that opens from disk: path in 3-D, charts, program, where the time goes.
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
 }
 
 /// What to score.

@@ -5,6 +5,7 @@ pub(crate) mod csv_writer;
 pub(crate) mod decimals;
 pub(crate) mod files;
 pub(crate) mod output_files;
+pub(crate) mod page;
 pub(crate) mod part;
 pub(crate) mod program_report;
 pub(crate) mod progress;

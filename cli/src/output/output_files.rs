@@ -4,6 +4,7 @@ use crate::error::CliError;
 use crate::input::args::{JobArgs, PlanArgs};
 use crate::output::csv_writer::Destination;
 use crate::output::files::{OutputFile, same_file};
+use crate::output::page::PageFile;
 use crate::plot::Picture;
 use std::io::Write;
 use std::path::Path;
@@ -69,6 +70,8 @@ pub(crate) struct PlanFiles {
     pub(crate) rows: RowsFile,
     /// The picture, if one was asked for.
     pub(crate) drawing: Option<Drawing>,
+    /// The page, if one was asked for.
+    pub(crate) page: Option<PageFile>,
 }
 
 impl PlanFiles {
@@ -92,6 +95,17 @@ impl PlanFiles {
                 bound: "the set-points are written there".to_owned(),
             });
         }
+        if let Some(page) = args.report.as_deref() {
+            for other in [rows, args.plot.as_deref()].into_iter().flatten() {
+                if same_file(page, other) {
+                    return Err(CliError::Option {
+                        option: "--report",
+                        value: page.display().to_string(),
+                        bound: "another file of this run is written there".to_owned(),
+                    });
+                }
+            }
+        }
         Ok(Self {
             rows: RowsFile {
                 file: rows
@@ -100,19 +114,21 @@ impl PlanFiles {
                 to_stdout,
             },
             drawing: Drawing::begin(args.plot.as_deref(), &args.job)?,
+            page: PageFile::begin(args.report.as_deref(), &args.job)?,
         })
     }
 
     /// Gives the complete files their names. Says whether the rows have standard output to themselves.
     pub(crate) fn commit(self) -> Result<bool, CliError> {
         let drawing = self.drawing.map(|drawing| drawing.file);
-        OutputFile::commit(self.rows.file.into_iter().chain(drawing))?;
+        let page = self.page.map(|page| page.file);
+        OutputFile::commit(self.rows.file.into_iter().chain(drawing).chain(page))?;
         Ok(self.rows.to_stdout)
     }
 }
 
 /// What a run reads, which must not be written over.
-fn inputs(job: &JobArgs) -> Vec<&Path> {
+pub(crate) fn inputs(job: &JobArgs) -> Vec<&Path> {
     let read = [job.program.as_path(), Path::new(&job.machine)];
     read.into_iter().chain(job.tool_table.as_deref()).collect()
 }

@@ -96,7 +96,7 @@ impl Windows {
 }
 
 /// The unit of positions.
-fn unit(kind: AxisKind) -> &'static str {
+pub(crate) fn unit(kind: AxisKind) -> &'static str {
     match kind {
         AxisKind::Linear => "mm",
         AxisKind::Rotary => "deg",

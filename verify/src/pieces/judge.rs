@@ -49,6 +49,8 @@ pub struct Judge<const N: usize> {
     /// What the sum of durations has lost to rounding.
     compensation: f64,
     claimed: Option<MoveRange>,
+    /// Largest distance of the last piece from the path and share of the tolerance, where each piece is measured.
+    measured: Option<[f64; 2]>,
 }
 
 impl<const N: usize> Judge<N> {
@@ -65,7 +67,23 @@ impl<const N: usize> Judge<N> {
             time: 0.0,
             compensation: 0.0,
             claimed: None,
+            measured: None,
         }
+    }
+
+    /// Measures the deviation of each piece, see [`Judge::last_deviation`]; without it only larger ones than any
+    /// before are looked for, which is several times faster.
+    #[must_use]
+    pub fn measuring_each(mut self) -> Self {
+        self.measured = Some([0.0; 2]);
+        self
+    }
+
+    /// Largest distance of the piece observed last from the path, mm, and its largest share of the tolerance
+    /// there; `None` unless each piece is measured.
+    #[must_use]
+    pub fn last_deviation(&self) -> Option<[f64; 2]> {
+        self.measured
     }
 
     /// Takes the next move of the path.
@@ -232,11 +250,18 @@ impl<const N: usize> Judge<N> {
     }
 
     fn judge_deviation(&mut self, stretch: &Stretch<N>, curve: &Cubic<N>, first: u32, last: u32) {
-        let known = [
-            self.report.deviation.value,
-            self.report.deviation_ratio.value,
-        ];
+        let known = if self.measured.is_some() {
+            [0.0; 2]
+        } else {
+            [
+                self.report.deviation.value,
+                self.report.deviation_ratio.value,
+            ]
+        };
         let found = deviation::largest(&self.route, curve, first, last, known);
+        if let Some(measured) = &mut self.measured {
+            *measured = found.bounds;
+        }
         let [distance, share] = found.attained;
         let when = |at: f64| stretch.begin + at * stretch.duration;
         let place = self.place(distance.mv);

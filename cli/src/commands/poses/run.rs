@@ -68,6 +68,13 @@ pub(crate) fn plan(
     if let Some(rate) = args.poses.turn_rate {
         settings = settings.with_turn_rate(rate);
     }
+    if let Some(report) = &args.report {
+        return Err(CliError::Option {
+            option: "--report",
+            value: report.display().to_string(),
+            bound: "pages are written for programs of straight axes, not of tool poses".to_owned(),
+        });
+    }
     let mut files = PlanFiles::begin(args)?;
     let legs = inputs.open(&args.job)?;
     let drawn = files.drawing.is_some();

@@ -106,7 +106,7 @@ impl Runs {
         let mut corner_speed = None;
         loop {
             let more = moves.fill(&mut batch)?;
-            lane.run(&batch, !more, name, |piece| {
+            lane.run(&batch, !more, name, |piece, _| {
                 // A piece that serves two moves turns the corner between them.
                 if corner_speed.is_none() && piece.serves().first < piece.serves().last {
                     corner_speed = Some(piece.at(0.0).velocity.norm());
