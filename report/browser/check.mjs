@@ -75,13 +75,13 @@ for (const program of programs) {
   check(Math.abs(range[0] - 0.3 * last) < 0.02 * last && Math.abs(range[1] - 0.5 * last) < 0.02 * last, `${name}: a drag zooms to ${range.map(x => x.toFixed(2))} s`);
   if (KEEP) await page.screenshot({ path: join(KEEP, name + '-zoom.png') });
   await page.locator('.u-over').first().dblclick();
-  check((await page.evaluate(() => toolglide.charts.range))[1] === last, `${name}: a double click shows all`);
+  check(Math.abs((await page.evaluate(() => toolglide.charts.range))[1] - last) < 1e-8, `${name}: a double click shows all`);
 
   // A click on a line of the program sets the time at which the motion comes to it.
-  const line = await page.evaluate(() => [...document.querySelectorAll('.l')].find(row => row.querySelector('.s').textContent)?.dataset.line);
   await page.evaluate(() => { document.getElementById('program').scrollTop = 0; });
+  await page.waitForTimeout(100); // the list draws itself again when it has scrolled
+  const line = await page.evaluate(() => [...document.querySelectorAll('.l')].find(row => row.querySelector('.s').textContent)?.dataset.line);
   if (line) {
-    await page.waitForTimeout(100); // the list draws itself again when it has scrolled
     const row = await page.locator(`.l[data-line="${line}"]`).boundingBox();
     await page.mouse.click(row.x + 200, row.y + 9);
     const hit = await page.evaluate(() => ({ line: toolglide.state().move, now: document.getElementById('now').textContent }));
@@ -128,7 +128,7 @@ for (const program of programs) {
 // Awkward programs.
 {
   const program = join(folder, 'awkward &lt; <b>.ngc');
-  writeFileSync(program, '(</script><script>alert(1)</script> & \u00e9)\nG21 G90 F600\nG1 X5 Y0\nX5 Y5\nM2\n');
+  writeFileSync(program, '(</script><script>alert.1</script> & \u00e9)\nG21 G90 F600\nG1 X5 Y0\nX5 Y5\nM2\n');
   const { page, complaints, context } = await opened(planned(program).file);
   check((await page.textContent('#program')).includes('</script>'), 'a program may say </script>');
   check((await page.textContent('#title')).includes('<b>'), 'so may its name');
