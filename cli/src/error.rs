@@ -8,6 +8,7 @@ use toolglide_fir::FirError;
 use toolglide_kinematics::PlanError;
 use toolglide_machines::MachineError;
 use toolglide_program::ProgramError;
+use toolglide_simulation::{DriveError, SimulationError};
 
 /// Everything is done and inside the limits.
 pub const DONE: u8 = 0;
@@ -44,6 +45,24 @@ pub enum CliError {
         value: String,
         /// What it must be.
         bound: String,
+    },
+    /// The drive of an axis is refused.
+    #[error("{asked}: drive of axis {axis}: {reason}")]
+    Drive {
+        /// The machine, as it was asked for.
+        asked: String,
+        /// Letter of the axis.
+        axis: char,
+        /// What is wrong.
+        reason: DriveError,
+    },
+    /// A simulation ends early.
+    #[error("{program}: {reason}")]
+    Simulation {
+        /// The program.
+        program: String,
+        /// What is wrong, and when.
+        reason: SimulationError,
     },
     /// A file cannot be read.
     #[error("{}: cannot be read: {reason}", file.display())]

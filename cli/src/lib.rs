@@ -12,6 +12,7 @@ mod methods;
 mod output;
 mod pipeline;
 mod plot;
+mod rounding;
 
 pub use error::{CliError, DONE, INTERRUPTED, OUTSIDE, REFUSED, TERMINATED};
 pub use input::signals::end_on_signals;
@@ -60,6 +61,8 @@ where
         Command::Check(args) => commands::check::check(&args, out, err),
         Command::Spectrum(args) => commands::spectrum::spectrum(&args, out, err),
         Command::Reproduce(args) => commands::reproduce::reproduce(&args, out, err),
+        Command::Simulate(args) => commands::simulate::simulate(&args, out, err),
+        Command::Identify(args) => commands::identify::identify(&args, out, err),
         Command::Machines(args) => commands::machines::machines(&args, out).map(|()| DONE),
         Command::Completions { shell } => {
             let mut command = CommandLine::command();

@@ -6,11 +6,12 @@ use crate::error::CliError;
 use crate::input::args::TuningArgs;
 use crate::input::filters::{asked, chain};
 use crate::input::setup::Setup;
+use toolglide_baselines::{BezierSmoothing, LocalOverlap};
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{Limits, MotionPlanner, Vector};
 use toolglide_optimal::{Effort, TimeOptimal};
 use toolglide_reference::ReferencePlanner;
-use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
+use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
 
 /// A method of planning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +61,14 @@ pub const METHODS: &[MethodName] = &[
         summary: "feed pulses through moving averages, a full stop at the end of every move",
     },
     MethodName {
+        name: BEZIER_FREE,
+        summary: "the dissertation's spline corners, which break the jerk limit; for comparison alone",
+    },
+    MethodName {
+        name: FIR_LOCAL,
+        summary: "the dissertation's overlap of one corner alone, which breaks the tolerance; for comparison alone",
+    },
+    MethodName {
         name: REFERENCE,
         summary: "the time-optimal reference, for short programs: minutes for a hundred moves",
     },
@@ -74,6 +83,20 @@ const OPTIMAL: &str = "optimal";
 
 /// The baseline of spline corners.
 const BEZIER: &str = "bezier";
+
+/// The baseline of spline corners without a jerk limit.
+const BEZIER_FREE: &str = "bezier-free";
+
+/// The baseline of filtered pulses by the rule of one corner.
+const FIR_LOCAL: &str = "fir-local";
+
+/// Filters of that baseline where nobody names any, s: those of section 4.3.
+const LOCAL_FILTERS: [f64; 2] = [0.05, 0.03];
+
+/// Whether a method is a baseline that breaks limits by what it is, so that it must be asked for.
+pub(crate) fn is_baseline(method: &str) -> bool {
+    method == BEZIER_FREE || method == FIR_LOCAL
+}
 
 /// The time-optimal reference: so slow that it must be asked for.
 pub(crate) const REFERENCE: &str = "reference";
@@ -130,6 +153,22 @@ pub(crate) fn planner<const N: usize>(
     if method == BEZIER {
         return Ok(Box::new(BezierSmoothing::new(start, limits)));
     }
+    if method == BEZIER_FREE {
+        let planner = BezierSmoothing::without_corner_jerk(start, limits);
+        return Ok(Box::new(planner.map_err(|reason| CliError::Option {
+            option: "--method",
+            value: BEZIER_FREE.to_owned(),
+            bound: reason.to_string(),
+        })?));
+    }
+    if method == FIR_LOCAL {
+        let chain = match &tuning.filters {
+            Some(chain) => chain.clone(),
+            None => FilterChain::with_time_constants(&LOCAL_FILTERS)
+                .map_err(CliError::filters(FIR_LOCAL))?,
+        };
+        return Ok(Box::new(LocalOverlap::new(start, limits, chain)));
+    }
     if method == REFERENCE {
         return Ok(Box::new(ReferencePlanner::new(start, limits)));
     }
@@ -146,7 +185,7 @@ pub(crate) fn chosen(asked: &[String]) -> Vec<String> {
     if asked.is_empty() {
         return METHODS
             .iter()
-            .filter(|method| method.name != REFERENCE)
+            .filter(|method| method.name != REFERENCE && !is_baseline(method.name))
             .map(|method| method.name.to_owned())
             .collect();
     }
@@ -188,7 +227,8 @@ mod tests {
     #[test]
     fn the_reference_must_be_asked_for() {
         let all = chosen(&[]);
-        assert_eq!(all.len(), METHODS.len() - 1);
+        assert_eq!(all.len(), METHODS.len() - 3);
+        assert!(!all.iter().any(|method| is_baseline(method)), "{all:?}");
         assert!(!all.contains(&REFERENCE.to_owned()), "{all:?}");
         assert_eq!(chosen(&[REFERENCE.to_owned()]), [REFERENCE]);
     }

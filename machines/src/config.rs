@@ -3,6 +3,7 @@
 //! Source: the fields of [`toolglide_kinematics::Axis`]. Not here: which axes a model needs, which
 //! the model itself checks.
 
+use crate::drive::DriveConfig;
 use crate::error::MachineError;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -48,6 +49,9 @@ pub struct MachineConfig {
     /// given.
     #[serde(default)]
     pub mode: Vec<ModeConfig>,
+    /// The drives of all axes; without it only the plan is known.
+    #[serde(default)]
+    pub drive: Option<DriveConfig>,
     /// The axes, in machine order.
     pub axis: Vec<AxisConfig>,
 }
@@ -65,6 +69,32 @@ pub struct ModeConfig {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub damping: f64,
+    /// Modal mass as a share of the mass of the axis; 0 for what the drive does not feel.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub mass_share: f64,
+    /// What the tool moves along X, Y and Z per unit of the mode; none for a beam that is only watched.
+    #[serde(default)]
+    pub tool: [f64; 3],
+    /// What the encoder sees of the mode: 1 for a ball screw with a scale at the table.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub encoder: f64,
+}
+
+impl ModeConfig {
+    /// A mode that the drive does not feel and the tool does not have.
+    #[must_use]
+    pub fn new(axis: char, frequency_hz: f64, damping: f64) -> Self {
+        Self {
+            axis,
+            frequency_hz,
+            damping,
+            mass_share: 0.0,
+            tool: [0.0; 3],
+            encoder: 0.0,
+        }
+    }
 }
 
 /// One axis. Limits and travel are in mm for a linear axis and in degrees for a rotary one.
@@ -95,6 +125,9 @@ pub struct AxisConfig {
     #[serde(default)]
     #[schemars(length(max = 4))]
     pub reference: Vec<f64>,
+    /// What is different about the drive of this axis.
+    #[serde(default)]
+    pub drive: Option<DriveConfig>,
 }
 
 fn default_tolerance() -> f64 {
@@ -117,6 +150,7 @@ impl MachineConfig {
             geometry: BTreeMap::new(),
             fir_s: Vec::new(),
             mode: Vec::new(),
+            drive: None,
             axis,
         }
     }
@@ -167,6 +201,23 @@ impl MachineConfig {
                     mode.damping,
                     "from 0 to below 1",
                 ));
+            }
+            if !(0.0..1.0).contains(&mode.mass_share) {
+                return Err(MachineError::field(
+                    field("mass_share"),
+                    mode.mass_share,
+                    "from 0 to below 1",
+                ));
+            }
+            if !(0.0..=1.0).contains(&mode.encoder) {
+                return Err(MachineError::field(
+                    field("encoder"),
+                    mode.encoder,
+                    "from 0 to 1",
+                ));
+            }
+            if let Some(share) = mode.tool.iter().find(|share| !share.is_finite()) {
+                return Err(MachineError::field(field("tool"), share, "finite"));
             }
         }
         Ok(&self.mode)
@@ -219,6 +270,7 @@ impl AxisConfig {
             reversed: false,
             zero: 0.0,
             reference: Vec::new(),
+            drive: None,
         }
     }
 
@@ -344,11 +396,7 @@ mod tests {
     fn a_mode_belongs_to_an_axis_and_has_a_frequency_and_a_damping() {
         let axis = AxisConfig::new('X', 100.0, 1000.0, 1e5);
         let mut config = MachineConfig::new("gantry", "m", vec![axis]);
-        let mode = |axis, frequency_hz, damping| ModeConfig {
-            axis,
-            frequency_hz,
-            damping,
-        };
+        let mode = ModeConfig::new;
         config.mode = vec![mode('X', 7.4, 0.01)];
         assert_eq!(config.modes().unwrap().len(), 1, "one mode");
         for wrong in [

@@ -8,6 +8,7 @@ mod arm_6r;
 mod config;
 mod corexy;
 mod delta;
+mod drive;
 mod elbow;
 mod error;
 mod file;
@@ -28,6 +29,9 @@ pub use arm_6r::ARM_6R;
 pub use config::{AxisConfig, MachineConfig, ModeConfig};
 pub use corexy::COREXY;
 pub use delta::DELTA;
+pub use drive::{
+    DriveConfig, FeedforwardConfig, FrictionConfig, InterpolationConfig, MeasuresConfig,
+};
 pub use error::MachineError;
 pub use file::{from_toml, load, schema};
 pub use gantry::GANTRY;

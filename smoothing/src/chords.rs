@@ -15,7 +15,7 @@ const TRIFLE: f64 = 8.0;
 
 /// The ends of the chords of an arc, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Chords<const N: usize> {
+pub struct Chords<const N: usize> {
     arc: Arc<N>,
     count: f64,
     next: f64,
@@ -24,7 +24,8 @@ pub(crate) struct Chords<const N: usize> {
 
 impl<const N: usize> Chords<N> {
     /// Chords that lie off the arc by `deviation` at the most.
-    pub(crate) fn new(arc: Arc<N>, deviation: f64) -> Self {
+    #[must_use]
+    pub fn new(arc: Arc<N>, deviation: f64) -> Self {
         let sweep = arc.sweep().abs();
         let bending = arc.bending();
         let angle = (8.0 * deviation / bending).sqrt().min(FRAC_PI_2);
@@ -59,12 +60,17 @@ impl<const N: usize> Chords<N> {
     }
 
     /// How far the arc lies from its chords at the most.
-    pub(crate) fn bulge(&self) -> f64 {
+    #[must_use]
+    pub fn bulge(&self) -> f64 {
         self.bulge
     }
 
-    /// The end of the next chord.
-    pub(crate) fn next(&mut self) -> Option<Vector<N>> {
+    /// The end of the next chord; `None` after the last.
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "the chords of an arc are counted, not iterated"
+    )]
+    pub fn next(&mut self) -> Option<Vector<N>> {
         if self.next > self.count {
             return None;
         }

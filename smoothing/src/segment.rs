@@ -6,34 +6,40 @@ use toolglide_kinematics::{MoveRange, PathLimits, Pause, Tolerance, Vector};
 
 /// A straight stretch of path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Segment<const N: usize> {
-    pub(crate) start: Vector<N>,
-    pub(crate) end: Vector<N>,
-    pub(crate) direction: Vector<N>,
-    pub(crate) length: f64,
+pub struct Segment<const N: usize> {
+    /// Where it starts.
+    pub start: Vector<N>,
+    /// Where it ends.
+    pub end: Vector<N>,
+    /// Unit direction.
+    pub direction: Vector<N>,
+    /// Length, mm.
+    pub length: f64,
     /// Limits along the leg; the velocity is the feedrate where that is lower.
-    pub(crate) limits: PathLimits,
+    pub limits: PathLimits,
     /// Largest speed of the moves that it serves.
-    pub(crate) feedrate: f64,
+    pub feedrate: f64,
     /// How far the motion may be from the moves that it serves.
-    pub(crate) tolerance: Tolerance,
+    pub tolerance: Tolerance,
     /// How far those moves may lie from the leg.
-    pub(crate) deviation: f64,
-    pub(crate) serves: MoveRange,
+    pub deviation: f64,
+    /// The moves that it serves.
+    pub serves: MoveRange,
     /// Numbers of the first of the vertices that corners are made of instead of it, and of the first
     /// after them. All those of an arc belong to its first leg.
-    pub(crate) vertices: [u64; 2],
+    pub vertices: [u64; 2],
     /// Whether the motion rests at its end.
-    pub(crate) stop: bool,
+    pub stop: bool,
     /// Whether it is the first part of a longer one, which goes on at its velocity.
-    pub(crate) cruises: bool,
+    pub cruises: bool,
     /// A pause at its end.
-    pub(crate) dwell: Option<Pause<N>>,
+    pub dwell: Option<Pause<N>>,
 }
 
 impl<const N: usize> Segment<N> {
     /// What merging has left of the tolerance.
-    pub(crate) fn room(&self) -> Tolerance {
+    #[must_use]
+    pub fn room(&self) -> Tolerance {
         self.tolerance.less(self.deviation)
     }
 

@@ -20,11 +20,11 @@ pub(crate) const STRAIGHT_SHARE: f64 = 1e-6;
 
 /// Share of the tolerance that merging and chords may use. On a curve of radius `R`, chords of length
 /// `c` lie `c^2 / 8R` off and corners that fill the chords cut `c^2 / 12R`: three parts to two.
-pub(crate) const MERGE_SHARE: f64 = 0.6;
+pub const MERGE_SHARE: f64 = 0.6;
 
 /// Share of the tolerance that merging may use where moves are to be taken as they come: enough to
 /// drop moves that are nothing but rounding.
-pub(crate) const ROUNDING_SHARE: f64 = 0.001;
+pub const ROUNDING_SHARE: f64 = 0.001;
 
 /// Length of moves that may be slowed to the feedrate of the moves that they are merged with, as a
 /// share of the tolerance: less than a micrometre where parts are machined.
@@ -44,15 +44,19 @@ pub(crate) const MAX_MERGED: usize = 1024;
 
 /// The end of a straight stretch of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Vertex<const N: usize> {
-    pub(crate) point: Vector<N>,
+pub struct Vertex<const N: usize> {
+    /// Where it is.
+    pub point: Vector<N>,
     /// How far the programmed path may lie from the straight stretch that ends here.
-    pub(crate) bulge: f64,
-    pub(crate) feedrate: f64,
-    pub(crate) tolerance: Tolerance,
-    pub(crate) serves: MoveRange,
+    pub bulge: f64,
+    /// Feedrate of the stretch, mm/s.
+    pub feedrate: f64,
+    /// Tolerance of the stretch.
+    pub tolerance: Tolerance,
+    /// The moves that the stretch serves.
+    pub serves: MoveRange,
     /// Number of the next one among the vertices that corners are made of, see [`Segment::vertices`].
-    pub(crate) next: u64,
+    pub next: u64,
 }
 
 /// The vertex at the end of a leg, which stands for all that the leg serves.
@@ -69,7 +73,7 @@ pub(crate) fn vertex_of<const N: usize>(leg: &Segment<N>) -> Vertex<N> {
 
 /// Merges vertices into legs.
 #[derive(Clone, Debug)]
-pub(crate) struct SegmentMerger<const N: usize> {
+pub struct SegmentMerger<const N: usize> {
     limits: Limits<N>,
     share: f64,
     anchor: Vector<N>,
@@ -130,7 +134,8 @@ struct Carried<const N: usize> {
 
 impl<const N: usize> SegmentMerger<N> {
     /// A merger that may use a share of the tolerance.
-    pub(crate) fn new(start: Vector<N>, limits: Limits<N>, share: f64) -> Self {
+    #[must_use]
+    pub fn new(start: Vector<N>, limits: Limits<N>, share: f64) -> Self {
         Self {
             limits,
             share,
@@ -168,7 +173,7 @@ impl<const N: usize> SegmentMerger<N> {
     }
 
     /// Takes the next vertex; gives the leg that it completes.
-    pub(crate) fn push(&mut self, vertex: Vertex<N>) -> Option<Segment<N>> {
+    pub fn push(&mut self, vertex: Vertex<N>) -> Option<Segment<N>> {
         if self.run.is_empty() && (vertex.point - self.anchor).norm() <= SHORTEST_LENGTH {
             self.carry(&vertex, vertex.serves, vertex.bulge);
             return None;
@@ -199,7 +204,7 @@ impl<const N: usize> SegmentMerger<N> {
     }
 
     /// Completes the leg under way, if there is one.
-    pub(crate) fn flush(&mut self) -> Option<Segment<N>> {
+    pub fn flush(&mut self) -> Option<Segment<N>> {
         let (first, last) = (*self.run.first()?, *self.run.last()?);
         let bounds = self.bounds?;
         let span = last.point - self.anchor;
@@ -247,7 +252,7 @@ impl<const N: usize> SegmentMerger<N> {
     }
 
     /// Moves that led nowhere and that no leg has served.
-    pub(crate) fn take_carried(&mut self) -> Option<Pause<N>> {
+    pub fn take_carried(&mut self) -> Option<Pause<N>> {
         let carried = self.carried.take()?;
         self.first = carried.next;
         Some(Pause {
@@ -275,7 +280,8 @@ impl<const N: usize> SegmentMerger<N> {
     }
 
     /// Where the last leg ended.
-    pub(crate) fn anchor(&self) -> Vector<N> {
+    #[must_use]
+    pub fn anchor(&self) -> Vector<N> {
         self.anchor
     }
 

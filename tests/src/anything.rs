@@ -7,12 +7,13 @@
 
 use std::f64::consts::TAU;
 use std::fmt::Debug;
+use toolglide_baselines::BezierSmoothing;
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{
     Arc, AxisLimits, Feedrate, Limits, MotionPlanner, Move, PlanError, Tolerance, Toolpath, Vector,
 };
 use toolglide_optimal::TimeOptimal;
-use toolglide_smoothing::{BezierSmoothing, KinematicSmoothing, Method, Settings};
+use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
 use toolglide_verify::{Judge, Report};
 
 /// Most pieces of the motion of one move, so that no planner goes on for ever.

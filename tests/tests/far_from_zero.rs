@@ -56,7 +56,7 @@ fn every_method_keeps_everything_a_kilometre_away() {
                 toolglide_fir::plan(&path, &settings).unwrap(),
             )
         });
-        let bezier = toolglide_smoothing::plan_bezier(&path, &limits()).unwrap();
+        let bezier = toolglide_baselines::plan_bezier(&path, &limits()).unwrap();
         let all = plans.into_iter().chain(filtered);
         for (name, plan) in all.chain([("bezier", bezier)]) {
             let report = verify(&plan, &path, &limits());

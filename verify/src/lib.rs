@@ -25,10 +25,11 @@ mod violation;
 #[cfg(test)]
 mod tests;
 
+pub use path::course::{Course, CourseFoot};
 pub use pieces::judge::Judge;
 pub use poses::{
-    AxisPeaks, AxisQuantity, PoseJudge, PoseReport, PoseSetPointJudge, PoseViolation,
-    keeps_axis_limits,
+    AxisPeaks, AxisQuantity, PoseCourse, PoseFoot, PoseJudge, PoseReport, PoseSetPointJudge,
+    PoseViolation, keeps_axis_limits,
 };
 pub use report::{Peak, Place, Report};
 pub use set_points::spacing::{Gap, Gaps, Unseen};

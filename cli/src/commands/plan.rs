@@ -16,6 +16,7 @@ use crate::output::report::{show, show_beside_rows};
 use crate::output::summary::{Summary, clock};
 use crate::pipeline::{Moves, Pipeline};
 use crate::plot::{Caption, Plot};
+use crate::rounding::RoundToPeriod;
 use std::io::{BufRead, Write};
 use std::path::Path;
 use toolglide_kinematics::Move;
@@ -29,6 +30,13 @@ pub(crate) fn plan(
     err: &mut dyn Write,
 ) -> Result<u8, CliError> {
     if crate::commands::poses::concerns(&args.job)? {
+        if args.round_to_period {
+            return Err(CliError::Option {
+                option: "--round-to-period",
+                value: "with tool poses".to_owned(),
+                bound: "it is for straight axes".to_owned(),
+            });
+        }
         return crate::commands::poses::plan(args, out, err);
     }
     let setup = Setup::new(&args.job, args.period)?;
@@ -93,9 +101,13 @@ where
     let drawn = files.drawing.is_some();
     let recorded = files.page.is_some();
     let destination = files.rows.destination(out);
+    let mut planner = planner(method, start, limits, &tuning)?;
+    if args.round_to_period {
+        planner = Box::new(RoundToPeriod::new(planner, setup.period));
+    }
     let outcome = Pipeline {
         moves: moves(&args.job, setup, source)?,
-        planner: planner(method, start, limits, &tuning)?,
+        planner,
         judge: if recorded {
             Judge::new(start, limits).measuring_each()
         } else {

@@ -7,9 +7,11 @@
 use crate::commands::plan::{moves, title, warn};
 use crate::error::CliError;
 use crate::input::args::SpectrumArgs;
+use crate::input::drives::{DriveChanges, Drives};
 use crate::input::setup::Setup;
 use crate::input::source::Source;
 use crate::input::travel::{OnAxes, by_axes};
+use crate::input::values::PerAxis;
 use crate::methods::{Tuning, chosen, planner};
 use crate::output::output_files::Drawing;
 use crate::output::report::{Shown, quoted, show};
@@ -20,7 +22,8 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
 use toolglide_fir::{Mode, Resonator};
-use toolglide_kinematics::{Move, Piece};
+use toolglide_kinematics::{Move, Piece, Vector};
+use toolglide_simulation::{ModeOutcome, SimulationError, SimulationSettings, Simulator};
 use toolglide_verify::Judge;
 
 /// Frequencies of a spectrum.
@@ -123,6 +126,9 @@ struct Left {
     damping: f64,
     left_um: f64,
     left_mm_s2: f64,
+    /// What is left behind the drives, where the machine file describes them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_at_the_machine_um: Option<f64>,
 }
 
 /// The spectrum of the acceleration of an axis.
@@ -146,7 +152,7 @@ where
     let drawing = Drawing::begin(args.plot.as_deref(), &args.job)?;
     let source = Source::open(&args.job.program, args.job.dialect.as_deref())?;
     let name = source.name.clone();
-    let frequencies = frequencies(&modes);
+    let frequencies = frequencies(&modes, args.range.as_ref(), setup)?;
     let mut axes: Vec<usize> = modes.iter().map(|excited| excited.axis).collect();
     axes.sort_unstable();
     axes.dedup();
@@ -157,17 +163,22 @@ where
         .map(|method| {
             let planner = planner(method, start, limits, &tuning)?;
             let oscillators = Oscillators::new(&modes, &axes, &frequencies)?;
-            Ok((Lane::new(planner, Judge::new(start, limits)), oscillators))
+            let simulator = simulator(setup, start)?;
+            let lane = Lane::new(planner, Judge::new(start, limits));
+            Ok((lane, oscillators, simulator))
         })
         .collect::<Result<Vec<_>, CliError>>()?;
     let mut moves = moves::<N>(&args.job, setup, source)?;
     let mut batch = Vec::new();
     loop {
         let more = moves.fill(&mut batch)?;
-        for (lane, oscillators) in &mut lanes {
+        for (lane, oscillators, simulator) in &mut lanes {
             lane.run(&batch, !more, &name, |piece, _| {
                 oscillators.pass(piece);
-                Ok(())
+                match simulator {
+                    Some(simulator) => simulator.observe(piece).map_err(refused(&name)),
+                    None => Ok(()),
+                }
             })?;
         }
         if !more {
@@ -178,18 +189,22 @@ where
     let methods = names
         .iter()
         .zip(lanes)
-        .map(|(method, (lane, oscillators))| {
+        .map(|(method, (lane, oscillators, simulator))| {
             let (report, _) = lane.finish();
-            Row {
+            let behind = match simulator {
+                Some(simulator) => simulator.finish().map_err(refused(&name))?.modes,
+                None => Vec::new(),
+            };
+            Ok(Row {
                 method: method.clone(),
                 cycle_time_s: report.cycle_time,
                 violations: report.violations,
-                modes: left(setup, &modes, &oscillators),
+                modes: left(setup, &modes, &oscillators, &behind),
                 spectra: magnitudes(setup, &oscillators),
                 worst: worst_first(&report.examples),
-            }
+            })
         })
-        .collect();
+        .collect::<Result<Vec<_>, CliError>>()?;
     let spectra = Found {
         program: name,
         machine: setup.machine.clone(),
@@ -247,17 +262,71 @@ fn excited(setup: &Setup) -> Result<Vec<Excited>, CliError> {
         .collect()
 }
 
-fn frequencies(modes: &[Excited]) -> Vec<f64> {
+fn frequencies(
+    modes: &[Excited],
+    range: Option<&PerAxis>,
+    setup: &Setup,
+) -> Result<Vec<f64>, CliError> {
     let of = |excited: &Excited| excited.mode.frequency();
-    let lowest = FROM * modes.iter().map(of).fold(f64::INFINITY, f64::min);
-    let highest = TO * modes.iter().map(of).fold(0.0, f64::max);
-    (0..FREQUENCIES)
+    let (lowest, highest) = match range {
+        None => (
+            FROM * modes.iter().map(of).fold(f64::INFINITY, f64::min),
+            TO * modes.iter().map(of).fold(0.0, f64::max),
+        ),
+        Some(range) => {
+            let nyquist = 0.5 / setup.period.seconds();
+            match range.0[..] {
+                [lowest, highest] if lowest < highest && highest < nyquist => (lowest, highest),
+                _ => {
+                    return Err(CliError::Option {
+                        option: "--range",
+                        value: format!("{:?}", range.0),
+                        bound: format!(
+                            "it must be two frequencies, the lower first, below half the frequency of the set-points, {nyquist} Hz"
+                        ),
+                    });
+                }
+            }
+        }
+    };
+    Ok((0..FREQUENCIES)
         .map(|index| f64::from(index) / f64::from(FREQUENCIES - 1))
         .map(|share| lowest + share * (highest - lowest))
-        .collect()
+        .collect())
 }
 
-fn left(setup: &Setup, modes: &[Excited], oscillators: &Oscillators) -> Vec<Left> {
+/// The drives of the machine, where its file describes them.
+fn simulator<const N: usize>(
+    setup: &Setup,
+    start: Vector<N>,
+) -> Result<Option<Simulator<N>>, CliError> {
+    if setup.drives.is_none() {
+        return Ok(None);
+    }
+    let drives = Drives::of(setup, &DriveChanges::default())?;
+    let settings = SimulationSettings {
+        period: setup.period.seconds(),
+        interpolation: drives.interpolation,
+        window: 0.002,
+    };
+    Simulator::new(&drives.axes, start, settings)
+        .map(Some)
+        .map_err(refused(&setup.asked))
+}
+
+fn refused(program: &str) -> impl Fn(SimulationError) -> CliError {
+    move |reason| CliError::Simulation {
+        program: program.to_owned(),
+        reason,
+    }
+}
+
+fn left(
+    setup: &Setup,
+    modes: &[Excited],
+    oscillators: &Oscillators,
+    behind: &[ModeOutcome],
+) -> Vec<Left> {
     modes
         .iter()
         .zip(&oscillators.modes)
@@ -267,6 +336,13 @@ fn left(setup: &Setup, modes: &[Excited], oscillators: &Oscillators) -> Vec<Left
             damping: excited.mode.damping(),
             left_um: 1e3 * resonator.displacement(),
             left_mm_s2: resonator.acceleration(),
+            left_at_the_machine_um: behind
+                .iter()
+                .find(|mode| {
+                    mode.axis == setup.axes[*axis].name
+                        && (mode.frequency - excited.mode.frequency()).abs() < 1e-9
+                })
+                .map(|mode| 1e3 * mode.left),
         })
         .collect()
 }
@@ -294,7 +370,7 @@ impl Shown for Found {
         }
         let _ = write!(
             text,
-            "\n\n{:<18} {:>14} {:>5} {:>9} {:>9} {:>10} {:>12} {:>14}\n",
+            "\n\n{:<18} {:>14} {:>5} {:>9} {:>9} {:>10} {:>12} {:>14}{}\n",
             "method",
             "cycle time, s",
             "axis",
@@ -302,7 +378,12 @@ impl Shown for Found {
             "damping",
             "left, µm",
             "left, mm/s²",
-            "spectrum, mm/s"
+            "spectrum, mm/s",
+            if self.has_drives() {
+                " at the machine, µm"
+            } else {
+                ""
+            }
         );
         for row in &self.methods {
             for left in &row.modes {
@@ -313,7 +394,7 @@ impl Shown for Found {
                     .map_or(0.0, |spectrum| self.near(spectrum, left.frequency_hz));
                 let _ = writeln!(
                     text,
-                    "{:<18} {:>14.4} {:>5} {:>9.2} {:>9.4} {:>10.3} {:>12.2} {:>14.3}",
+                    "{:<18} {:>14.4} {:>5} {:>9.2} {:>9.4} {:>10.3} {:>12.2} {:>14.3}{}",
                     row.method,
                     row.cycle_time_s,
                     left.axis,
@@ -321,7 +402,9 @@ impl Shown for Found {
                     left.damping,
                     left.left_um,
                     left.left_mm_s2,
-                    spectrum
+                    spectrum,
+                    left.left_at_the_machine_um
+                        .map_or_else(String::new, |left| format!(" {left:>19.3}"))
                 );
             }
         }
@@ -344,6 +427,12 @@ impl Shown for Found {
 }
 
 impl Found {
+    /// Whether anything is known of what is left at the machine.
+    fn has_drives(&self) -> bool {
+        let mut modes = self.methods.iter().flat_map(|row| &row.modes);
+        modes.any(|left| left.left_at_the_machine_um.is_some())
+    }
+
     /// The magnitude at the frequency of the spectrum that is nearest.
     fn near(&self, spectrum: &Magnitudes, frequency: f64) -> f64 {
         let after = self

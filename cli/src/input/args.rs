@@ -2,7 +2,9 @@
 //!
 //! Not here: how values are read, and what a machine or a program makes of them.
 
-use crate::input::values::{PerAxis, coordinates, mode, parameter, per_axis, positive};
+use crate::input::values::{
+    PerAxis, Sweep, coordinates, mode, parameter, per_axis, positive, sweep,
+};
 use crate::methods::METHODS;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
@@ -39,6 +41,10 @@ pub(crate) enum Command {
     Reproduce(ReproduceArgs),
     /// Show what the motion of several methods does to the modes of vibration of the machine.
     Spectrum(SpectrumArgs),
+    /// Simulate drives, friction and flexible modes behind a motion: what arrives on the part.
+    Simulate(SimulateArgs),
+    /// Fit the drives of a machine to a recorded run.
+    Identify(IdentifyArgs),
     /// List the machines there are, or describe one.
     Machines(MachinesArgs),
     /// Print completions for a shell.
@@ -49,7 +55,7 @@ pub(crate) enum Command {
 }
 
 /// The program, and the limits that its motion must keep.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct JobArgs {
     /// Part program (RS274/NGC; for plan and verify also tool poses in .apt, .cls or .ncl); - reads standard input.
     #[arg(value_name = "PROGRAM")]
@@ -90,8 +96,28 @@ pub(crate) struct JobArgs {
     pub(crate) json: bool,
 }
 
+impl JobArgs {
+    /// A machine alone, without a program.
+    pub(crate) fn for_machine(machine: &str, json: bool) -> Self {
+        Self {
+            program: PathBuf::new(),
+            machine: machine.to_owned(),
+            dialect: None,
+            tolerance: None,
+            max_velocity: None,
+            max_acceleration: None,
+            max_jerk: None,
+            start: None,
+            lenient: false,
+            tool_table: None,
+            parameters: Vec::new(),
+            json,
+        }
+    }
+}
+
 /// What some methods can be told.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct TuningArgs {
     /// Time constants of the filters of the methods fir and fir-p2p, s, as in 0.05,0.03 [default:
     /// those of the machine file, or notches on its modes, or as the limits and feedrates ask].
@@ -141,6 +167,9 @@ pub(crate) struct PlanArgs {
     /// Time between two set-points, s [default: that of the machine].
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) period: Option<f64>,
+    /// Stretch the motion between rests to whole periods, so that the last row is on the grid; for straight axes.
+    #[arg(long)]
+    pub(crate) round_to_period: bool,
     /// Write the set-points as CSV to a file; - is standard output.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) output: Option<PathBuf>,
@@ -242,9 +271,88 @@ pub(crate) struct SpectrumArgs {
     /// of those of the machine file. May be given several times.
     #[arg(long = "mode", value_name = "AXIS,HZ[,DAMPING]", value_parser = mode)]
     pub(crate) modes: Vec<ModeConfig>,
+    /// Lowest and highest frequency of the spectra, Hz [default: a quarter of the lowest mode to twice the highest].
+    #[arg(long, value_name = "HZ,HZ", value_parser = per_axis, allow_hyphen_values = true)]
+    pub(crate) range: Option<PerAxis>,
     /// Draw the spectra; the ending decides between .svg and .png.
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) plot: Option<PathBuf>,
+}
+
+/// What to simulate.
+#[derive(Debug, Args)]
+pub(crate) struct SimulateArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// Which methods, as in kcs,fir: one row each.
+    #[arg(long = "method", alias = "methods", value_name = "A,B,...", value_delimiter = ',', value_parser = methods(),
+        default_value = "kcs")]
+    pub(crate) methods: Vec<String>,
+    /// What some methods can be told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// Time between two set-points, s [default: that of the machine].
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) period: Option<f64>,
+    /// Simulate these set-points instead of a planned motion: CSV with the columns t_s, x_mm, y_mm, z_mm.
+    #[arg(long, value_name = "ROWS.csv")]
+    pub(crate) set_points: Option<PathBuf>,
+    /// Drives to take where the machine file has none.
+    #[arg(long, value_name = "NAME", value_parser = ["textbook"])]
+    pub(crate) drive: Option<String>,
+    /// Bandwidth of the position loop of all axes, Hz, instead of what the machine file says.
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) bandwidth: Option<f64>,
+    /// Feedforward of all axes: none, or some of velocity, acceleration, friction, zero-phase.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    pub(crate) feedforward: Option<Vec<String>>,
+    /// Leave the flexible modes out.
+    #[arg(long)]
+    pub(crate) rigid: bool,
+    /// Leave friction out.
+    #[arg(long)]
+    pub(crate) no_friction: bool,
+    /// How near to its end an axis counts as settled, µm or µrad.
+    #[arg(long, value_name = "UM", value_parser = positive, allow_hyphen_values = true, default_value_t = 2.0)]
+    pub(crate) window_um: f64,
+    /// Fail where the part error exceeds this, mm.
+    #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) require: Option<f64>,
+    /// Vary one quantity, one row a value: jerk, acceleration, tolerance, bandwidth, or fir with time constants between
+    /// colons, as in jerk=2e4,5e4 or fir=0.05:0.03,0.1:0.06.
+    #[arg(long, value_name = "NAME=A,B,...", value_parser = sweep)]
+    pub(crate) sweep: Option<Sweep>,
+    /// Write every servo period as CSV to a file; - is standard output.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw the errors; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Draw the frequency responses of the drives; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) response: Option<PathBuf>,
+}
+
+/// What to identify.
+#[derive(Debug, Args)]
+pub(crate) struct IdentifyArgs {
+    /// Recorded run: CSV with the column t_s and, for each axis, planned_x, actual_x and where known force_x (per mass)
+    /// and accel_x of what swings; mm and rad. What simulate writes with -o is one.
+    #[arg(value_name = "MEASURED.csv")]
+    pub(crate) recording: PathBuf,
+    /// Registered machine, or machine file, whose drives are where the fit begins.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) machine: String,
+    /// Drives to begin with where the machine file has none.
+    #[arg(long, value_name = "NAME", value_parser = ["textbook"])]
+    pub(crate) drive: Option<String>,
+    /// Bandwidth to begin with, Hz.
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) bandwidth: Option<f64>,
+    /// Print one JSON object instead of the text.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// What to reproduce.

@@ -2,7 +2,9 @@
 
 pub(crate) mod args;
 pub(crate) mod csv_reader;
+pub(crate) mod drives;
 pub(crate) mod filters;
+pub(crate) mod recording;
 pub(crate) mod setup;
 pub(crate) mod signals;
 pub(crate) mod source;

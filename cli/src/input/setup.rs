@@ -11,7 +11,9 @@ use toolglide_kinematics::{
     Axis, AxisKind, AxisLimits, AxisVector, Limits, MachineKinematics, SamplePeriod, Tolerance,
     ToolPose, Vector,
 };
-use toolglide_machines::{MachineConfig, MachineError, ModeConfig, find, is_plain, load};
+use toolglide_machines::{
+    DriveConfig, MachineConfig, MachineError, ModeConfig, find, is_plain, load,
+};
 use toolglide_program::{AXES_BESIDE, ToolTable};
 
 /// Shortest period that is taken, s: below it a file of set-points has no end worth waiting for.
@@ -45,6 +47,10 @@ pub(crate) struct Setup {
     pub(crate) tools: ToolTable,
     /// Its reference points: X Y Z in mm, A B C in degrees.
     pub(crate) reference_points: Vec<[f64; 6]>,
+    /// What the machine file says of the drive of each axis; none where it does not.
+    pub(crate) drives: Option<Vec<DriveConfig>>,
+    /// Whether rotary axes are counted in degrees.
+    pub(crate) counts_degrees: bool,
     start: Vec<f64>,
 }
 
@@ -74,6 +80,14 @@ pub(crate) fn machine(name: &str) -> Result<(MachineConfig, Box<dyn MachineKinem
             reason: Box::new(reason),
         })?;
     Ok((config, machine))
+}
+
+/// The drive of each axis, where the file says anything about drives.
+fn drives(config: &MachineConfig) -> Option<Vec<DriveConfig>> {
+    let given = config.drive.is_some() || config.axis.iter().any(|axis| axis.drive.is_some());
+    let all = config.drive.unwrap_or_default();
+    let of = |own: Option<DriveConfig>| own.map_or(all, |own| own.over(all));
+    given.then(|| config.axis.iter().map(|axis| of(axis.drive)).collect())
 }
 
 /// Whether a machine has straight axes X Y or X Y Z alone, which planners of straight axes take.
@@ -125,7 +139,10 @@ impl Setup {
         };
         let modes = config.modes()?.to_vec();
         let reference_points = config.reference_points()?;
+        let drives = drives(&config);
         Ok(Self {
+            drives,
+            counts_degrees: false,
             time_constants: config.fir_s,
             modes,
             modes_asked: format!("{}: [[mode]]", job.machine),
@@ -185,6 +202,7 @@ impl Setup {
 
     /// The same with rotary axes in degrees.
     fn in_degrees(mut self) -> Result<Self, CliError> {
+        self.counts_degrees = true;
         let degrees = |angle: f64| (angle.to_degrees() * DECIMALS).round() / DECIMALS;
         for (axis, start) in self.axes.iter_mut().zip(&mut self.start) {
             if axis.kind == AxisKind::Rotary {

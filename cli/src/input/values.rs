@@ -40,6 +40,64 @@ pub(crate) fn per_axis(text: &str) -> Result<PerAxis, String> {
         .map(PerAxis)
 }
 
+/// A quantity that is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Varied {
+    /// Largest jerk of all axes, mm/s³.
+    Jerk,
+    /// Largest acceleration of all axes, mm/s².
+    Acceleration,
+    /// Corner tolerance, mm.
+    Tolerance,
+    /// Bandwidth of the drives, Hz.
+    Bandwidth,
+    /// Time constants of the filters, s.
+    Fir,
+}
+
+/// A quantity and its values; more than one number each for time constants alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sweep {
+    /// Which quantity.
+    pub(crate) varied: Varied,
+    /// Its values.
+    pub(crate) values: Vec<Vec<f64>>,
+}
+
+/// A sweep, as in jerk=2e4,5e4.
+pub(crate) fn sweep(text: &str) -> Result<Sweep, String> {
+    let names = "jerk, acceleration, tolerance, bandwidth and fir";
+    let (name, list) = text
+        .split_once('=')
+        .ok_or_else(|| format!("\"{text}\" is no NAME=A,B,...; there are {names}"))?;
+    let varied = match name.trim() {
+        "jerk" => Varied::Jerk,
+        "acceleration" => Varied::Acceleration,
+        "tolerance" => Varied::Tolerance,
+        "bandwidth" => Varied::Bandwidth,
+        "fir" => Varied::Fir,
+        other => return Err(format!("\"{other}\" cannot be varied; there are {names}")),
+    };
+    let values = list
+        .split(',')
+        .map(|value| {
+            value
+                .split(':')
+                .map(positive)
+                .collect::<Result<Vec<f64>, _>>()
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    if varied != Varied::Fir
+        && let Some(several) = values.iter().find(|value| value.len() > 1)
+    {
+        return Err(format!(
+            "{name} takes one number a row, not {}",
+            several.len()
+        ));
+    }
+    Ok(Sweep { varied, values })
+}
+
 /// A mode of vibration: axis, frequency, damping ratio.
 pub(crate) fn mode(text: &str) -> Result<ModeConfig, String> {
     let mut parts = text.split(',').map(str::trim);
@@ -54,11 +112,11 @@ pub(crate) fn mode(text: &str) -> Result<ModeConfig, String> {
     if let Some(more) = parts.next() {
         return Err(format!("\"{more}\" is one number too many"));
     }
-    Ok(ModeConfig {
-        axis: axis.to_ascii_uppercase(),
+    Ok(ModeConfig::new(
+        axis.to_ascii_uppercase(),
         frequency_hz,
         damping,
-    })
+    ))
 }
 
 /// A parameter of a program and its value.
@@ -87,6 +145,25 @@ mod tests {
         assert_eq!(per_axis("500"), Ok(PerAxis(vec![500.0])));
         assert_eq!(per_axis("1, 2,3e2"), Ok(PerAxis(vec![1.0, 2.0, 300.0])));
         assert_eq!(coordinates("-1,0,2"), Ok(PerAxis(vec![-1.0, 0.0, 2.0])));
+    }
+
+    #[test]
+    fn a_sweep_is_a_quantity_and_its_values() {
+        let found = sweep("jerk=2e4,5e4").unwrap();
+        assert_eq!(found.varied, Varied::Jerk);
+        assert_eq!(found.values, [vec![2e4], vec![5e4]]);
+        let found = sweep("fir=0.05:0.03,0.1").unwrap();
+        assert_eq!(found.values, [vec![0.05, 0.03], vec![0.1]]);
+        for wrong in [
+            "jerk",
+            "snap=1",
+            "jerk=",
+            "jerk=1:2",
+            "tolerance=0",
+            "fir=nan",
+        ] {
+            assert!(sweep(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod path;
 mod picture;
 mod render;
 mod sheet;
+mod simulation;
 mod spectra;
 mod trace;
 pub(crate) mod zoom;
@@ -30,6 +31,7 @@ pub(crate) use contrast::Contrast;
 pub(crate) use feeds::Feeds;
 pub(crate) use picture::Picture;
 pub(crate) use sheet::Caption;
+pub(crate) use simulation::{ResponseCurve, Responses, SimulationPlot, SimulationTrace};
 pub(crate) use spectra::{Spectra, Spectrum};
 
 /// Points at which the speed along a piece is drawn.

@@ -9,7 +9,7 @@ use toolglide_kinematics::{Corner, MoveRange, Piece, Sample, Tolerance};
 use toolglide_profiles::{ProfileError, SCurve, SCurveBoundary};
 
 /// Most pieces of a leg, its corner and a pause.
-pub(crate) const MAX_PIECES: usize = 16;
+pub const MAX_PIECES: usize = 16;
 
 fn feed_on<const N: usize>(
     leg: &Segment<N>,
@@ -26,7 +26,7 @@ fn feed_on<const N: usize>(
 }
 
 /// Unrolls the leg between two corner motions.
-pub(crate) fn unroll_leg<const N: usize>(
+pub fn unroll_leg<const N: usize>(
     leg: &Segment<N>,
     from: &BlendShape,
     to: &BlendShape,
@@ -73,7 +73,8 @@ pub(crate) fn unroll_leg<const N: usize>(
 }
 
 /// The corner between two legs.
-pub(crate) fn corner_between<const N: usize>(
+#[must_use]
+pub fn corner_between<const N: usize>(
     leg: &Segment<N>,
     next: &Segment<N>,
     tolerance: Tolerance,

@@ -23,10 +23,11 @@ const MIN_FRESH: usize = 2;
 
 /// A straight move as the window sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Link {
-    pub(crate) length: f64,
+pub struct Link {
+    /// Length, mm.
+    pub length: f64,
     /// Limits along the move; the velocity is the feedrate where that is lower.
-    pub(crate) limits: PathLimits,
+    pub limits: PathLimits,
 }
 
 /// A corner in the window.
@@ -62,7 +63,7 @@ impl Node {
 
 /// Scales the motions of consecutive corners, one kind of motion per corner, as moves stream in.
 #[derive(Clone, Debug)]
-pub(crate) struct Window {
+pub struct Window {
     /// The first node is committed: its shape is scaled already.
     nodes: VecDeque<Node>,
     /// Link `i` leads from node `i` to node `i + 1`, the last one to what has not been read.
@@ -85,7 +86,8 @@ impl Window {
     ///
     /// A balanced window starts from scales at which both ends of every move run out at the same
     /// speed; without it, one large corner may leave no room to the next.
-    pub(crate) fn new(size: usize, balanced: bool) -> Self {
+    #[must_use]
+    pub fn new(size: usize, balanced: bool) -> Self {
         let size = size.max(1);
         let mut window = Self {
             nodes: VecDeque::with_capacity(size + 3),
@@ -132,12 +134,12 @@ impl Window {
     }
 
     /// Takes the first move, or the first after a place that is passed at speed.
-    pub(crate) fn begin(&mut self, link: Link) {
+    pub fn begin(&mut self, link: Link) {
         self.links.push_back(link);
     }
 
     /// Takes the corner at the end of the last move, and the move after it.
-    pub(crate) fn push(&mut self, shape: BlendShape, link: Link) {
+    pub fn push(&mut self, shape: BlendShape, link: Link) {
         let mut node = Node::new(shape, 0.0);
         if let (Some(before), Some(last)) = (self.links.back(), self.nodes.back_mut()) {
             node.cap = feed_cap(&shape.entry, before).min(feed_cap(&shape.exit, &link));
@@ -162,12 +164,12 @@ impl Window {
     }
 
     /// Says that the last move ends at rest.
-    pub(crate) fn finish(&mut self) {
+    pub fn finish(&mut self) {
         self.finished = true;
     }
 
     /// The motion of the next corner, scaled; `None` until enough of the path is known.
-    pub(crate) fn pull(&mut self) -> Option<BlendShape> {
+    pub fn pull(&mut self) -> Option<BlendShape> {
         let known = self.known();
         if known == 0 {
             return None;

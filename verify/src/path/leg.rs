@@ -127,6 +127,23 @@ impl<const N: usize> Leg<N> {
         }
     }
 
+    /// The point of the move nearest to another, and the direction of travel there; zero on a move of no length.
+    pub(crate) fn foot(&self, point: &Vector<N>) -> (Vector<N>, Vector<N>) {
+        match &self.shape {
+            Shape::Line { span, share } => {
+                let along = ((point - self.start).dot(span) * share).clamp(0.0, 1.0);
+                (
+                    self.start + span * along,
+                    span.try_normalize(0.0).unwrap_or_else(Vector::zeros),
+                )
+            }
+            Shape::Arc(helix) => {
+                let (share, _) = helix.nearest(point);
+                (helix.point(share), helix.arc.tangent(share))
+            }
+        }
+    }
+
     /// Bernstein coefficients of a cubic that is nowhere below the distance of the curve.
     ///
     /// The distance from a line is convex, so that its values at the control points do.

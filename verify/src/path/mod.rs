@@ -3,6 +3,7 @@
 pub(crate) mod bernstein;
 pub(crate) mod chord;
 pub(crate) mod closest_approach;
+pub(crate) mod course;
 pub(crate) mod deviation;
 pub(crate) mod deviation_bound;
 pub(crate) mod helix;

@@ -7,12 +7,14 @@ mod axes;
 mod axis_limits;
 mod corners_and_stops;
 mod course;
+mod pose_course;
 mod report;
 mod route;
 mod set_points;
 mod swing;
 mod tool_deviation;
 
+pub use pose_course::{PoseCourse, PoseFoot};
 pub use report::{AxisPeaks, AxisQuantity, PoseReport, PoseViolation};
 pub use set_points::PoseSetPointJudge;
 

@@ -38,7 +38,7 @@ fn gain(turn: f64, tolerance: f64, runs: &mut Runs) -> Result<f64, CliError> {
     let text = format!("G64 P{tolerance}\nG1 X10 F6000\nG1 X{x:.9} Y{y:.9}\n");
     let name = format!("a turn of {turn:.2} degrees");
     let mut time = |method| {
-        runs.plan((&text, &name), LIMITS, method, &Tuning::default())
+        runs.plan((&text, &name), LIMITS, method, &Tuning::default(), None)
             .map(|outcome| outcome.cycle_time)
     };
     Ok(time("kcs-interrupted")? - time("kcs-uninterrupted")?)

@@ -26,10 +26,24 @@ pub(super) enum Quantity {
     Gain(&'static Course, f64),
     /// Largest distance from the path.
     Deviation(Planned),
+    /// Root mean square of the distance from the planned motion, behind the reference drive.
+    ContourRms(Planned),
+    /// Largest distance from the planned motion, behind the reference drive.
+    ContourLargest(Planned),
     /// Time for a path of tool poses.
     PoseTime(&'static PosePath, PoseMethod),
     /// By how much one method is faster than another on a path of tool poses, percent.
     PoseGain(&'static PosePath, PoseMethod, PoseMethod),
+    /// Largest acceleration of the tool tip by one method over that by another, on a path of tool poses.
+    PoseAcceleration(&'static PosePath, PoseMethod, PoseMethod),
+    /// Root mean square of the distance of the tool tip from the planned motion behind the drives of a mill.
+    PoseServo(&'static PosePath, PoseMethod),
+    /// Root mean square of the distance of the tool tip from the program behind the drives of a mill.
+    PosePart(&'static PosePath, PoseMethod),
+    /// What a motion leaves in a beam behind the drives, by its place among the beams.
+    BeamLeft(Planned, usize),
+    /// Largest acceleration of a beam behind the drives.
+    BeamAcceleration(Planned, usize),
     /// How long two moves of a path of tool poses are under way at the same time.
     PoseOverlap(&'static PosePath, PoseMethod),
 }
@@ -40,6 +54,7 @@ fn called(method: PoseMethod) -> &'static str {
         PoseMethod::PointToPoint => "p2p",
         PoseMethod::DwellControlled => "ns-dcb",
         PoseMethod::VelocityControlled => "ns-vcb",
+        PoseMethod::JointSpace { way_points: 1.. } => "ns-jcb with way-points",
         _ => "ns-jcb",
     }
 }
@@ -58,12 +73,19 @@ impl Quantity {
             Self::CycleTime(planned)
             | Self::CornerSpeed(planned)
             | Self::Deviation(planned)
+            | Self::ContourRms(planned)
+            | Self::ContourLargest(planned)
+            | Self::BeamLeft(planned, _)
+            | Self::BeamAcceleration(planned, _)
             | Self::Ratio(planned, _)
             | Self::PerCorner(planned, _, _) => Some(planned.course.name),
             Self::CircleFeed(course, ..) | Self::Gain(course, _) => Some(course.name),
-            Self::PoseTime(path, _) | Self::PoseGain(path, ..) | Self::PoseOverlap(path, _) => {
-                Some(path.name)
-            }
+            Self::PoseTime(path, _)
+            | Self::PoseGain(path, ..)
+            | Self::PoseAcceleration(path, ..)
+            | Self::PoseServo(path, _)
+            | Self::PosePart(path, _)
+            | Self::PoseOverlap(path, _) => Some(path.name),
             Self::Crossover(_) => None,
         }
     }
@@ -80,10 +102,29 @@ impl Quantity {
             Self::CircleFeed(_, radius, _) => format!("largest feedrate, radius of {radius} mm"),
             Self::Gain(_, frequency) => format!("gain of the filters at {frequency} Hz"),
             Self::Deviation(planned) => format!("deviation, {}", planned.method),
+            Self::ContourRms(planned) => format!("contour error RMS, {}", planned.method),
+            Self::ContourLargest(planned) => format!("largest contour error, {}", planned.method),
             Self::PoseTime(_, method) => format!("cycle time, {}", called(*method)),
             Self::PoseGain(_, method, other) => {
                 format!("{} faster than {}", called(*method), called(*other))
             }
+            Self::PoseAcceleration(_, method, other) => {
+                format!("tip acceleration, {} / {}", called(*method), called(*other))
+            }
+            Self::PoseServo(_, method) => {
+                format!("tip error RMS to the plan, {}", called(*method))
+            }
+            Self::PosePart(_, method) => {
+                format!("tip error RMS to the program, {}", called(*method))
+            }
+            Self::BeamLeft(planned, beam) => {
+                format!("left in beam {}, {}", ["X", "Y"][beam % 2], planned.method)
+            }
+            Self::BeamAcceleration(planned, beam) => format!(
+                "largest beam acceleration {}, {}",
+                ["X", "Y"][beam % 2],
+                planned.method
+            ),
             Self::PoseOverlap(_, method) => {
                 format!("blend time of the corner, {}", called(*method))
             }
@@ -97,8 +138,14 @@ impl Quantity {
             Self::CycleTime(_) | Self::PoseTime(..) => "s",
             Self::PoseGain(..) => "%",
             Self::CornerSpeed(_) | Self::CircleFeed(..) => "mm/s",
-            Self::Ratio(..) | Self::Gain(..) => "",
-            Self::Deviation(_) => "µm",
+            Self::Ratio(..) | Self::Gain(..) | Self::PoseAcceleration(..) => "",
+            Self::BeamAcceleration(..) => "mm/s²",
+            Self::Deviation(_)
+            | Self::ContourRms(_)
+            | Self::ContourLargest(_)
+            | Self::BeamLeft(..)
+            | Self::PoseServo(..)
+            | Self::PosePart(..) => "µm",
             Self::PerCorner(..) | Self::PoseOverlap(..) => "ms",
             Self::Crossover(_) => "deg",
         }
@@ -112,9 +159,15 @@ impl Quantity {
             | Self::PerCorner(..)
             | Self::PoseOverlap(..)
             | Self::CircleFeed(..)
+            | Self::ContourRms(_)
+            | Self::ContourLargest(_)
+            | Self::BeamLeft(..)
+            | Self::PoseServo(..)
+            | Self::PosePart(..)
+            | Self::PoseAcceleration(..)
             | Self::Deviation(_) => 2,
             Self::Ratio(..) => 4,
-            Self::Crossover(_) | Self::PoseGain(..) => 1,
+            Self::Crossover(_) | Self::PoseGain(..) | Self::BeamAcceleration(..) => 1,
         }
     }
 }

@@ -62,10 +62,19 @@ fn value(quantity: &Quantity, runs: &mut Runs) -> Result<f64, CliError> {
             let more = time(planned.course, planned.method)? - time(planned.course, other)?;
             1e3 * more / f64::from(corners)
         }
+        Quantity::ContourRms(planned) => 1e3 * runs.contour(planned)?.rms(),
+        Quantity::ContourLargest(planned) => 1e3 * runs.contour(planned)?.largest,
         Quantity::PoseTime(path, method) => path.time(method)?,
         Quantity::PoseGain(path, method, other) => {
             100.0 * (1.0 - path.time(method)? / path.time(other)?)
         }
+        Quantity::PoseAcceleration(path, method, other) => {
+            path.acceleration(method)? / path.acceleration(other)?
+        }
+        Quantity::PoseServo(path, method) => 1e3 * path.simulated(method)?.tip.servo.rms(),
+        Quantity::PosePart(path, method) => 1e3 * path.simulated(method)?.tip.part.rms(),
+        Quantity::BeamLeft(planned, beam) => 1e3 * runs.beam(planned, beam)?.left,
+        Quantity::BeamAcceleration(planned, beam) => runs.beam(planned, beam)?.largest_acceleration,
         Quantity::PoseOverlap(path, method) => 1e3 * path.overlap(method)?,
         Quantity::Crossover(tolerance) => crossover(tolerance, runs)?,
         Quantity::CircleFeed(course, radius, tolerance) => {

@@ -9,20 +9,22 @@ mod bend;
 mod course;
 mod quintic;
 
-use crate::chords::Chords;
-use crate::segment_merger::{MERGE_SHARE, Vertex};
 use course::Course;
 use toolglide_kinematics::{
     Limits, MotionPlanner, Move, MoveRange, Path, PathCursor, Pause, Piece, Plan, PlanError,
     Toolpath, Vector,
 };
+use toolglide_smoothing::parts::{Chords, MERGE_SHARE, Vertex};
+
+/// Jerk of a corner without a limit, in limits: beyond what any corner of a machine asks for.
+const FREE_JERK: f64 = 1e4;
 
 /// Plans corners of curvature-optimal quintics while the path is being read.
 ///
 /// # Examples
 /// ```
 /// use toolglide_kinematics::{Feedrate, Limits, Tolerance, Toolpath, Trajectory, Vector};
-/// use toolglide_smoothing::plan_bezier;
+/// use toolglide_baselines::plan_bezier;
 /// let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Vector::<2>::from);
 /// let path = Toolpath::from_points(&corner, Feedrate::new(100.0)?, Tolerance::new(0.1)?)?;
 /// let motion = plan_bezier(&path, &Limits::uniform(500.0, 2500.0, 2e6)?)?;
@@ -45,8 +47,36 @@ impl<const N: usize> BezierSmoothing<N> {
         Self {
             intake: PathCursor::new(start),
             arc: None,
-            course: Box::new(Course::new(start, limits)),
+            course: Box::new(Course::new(start, limits, limits)),
         }
+    }
+
+    /// The same without a limit of jerk at the corners, as section 2.3.2 describes its baseline: acceleration alone bounds the
+    /// speed through a corner. The motion breaks the jerk limit there.
+    ///
+    /// # Errors
+    /// [`LimitsError`](toolglide_kinematics::LimitsError) for limits that have no room for a larger jerk.
+    pub fn without_corner_jerk(
+        start: Vector<N>,
+        limits: Limits<N>,
+    ) -> Result<Self, toolglide_kinematics::LimitsError> {
+        let mut axes = Vec::with_capacity(N);
+        for axis in 0..N {
+            axes.push(toolglide_kinematics::AxisLimits::new(
+                limits.velocity()[axis],
+                limits.acceleration()[axis],
+                limits.jerk()[axis] * FREE_JERK,
+            )?);
+        }
+        let mut free = limits;
+        if let Ok(axes) = <[toolglide_kinematics::AxisLimits; N]>::try_from(axes) {
+            free = Limits::new(axes);
+        }
+        Ok(Self {
+            intake: PathCursor::new(start),
+            arc: None,
+            course: Box::new(Course::new(start, limits, free)),
+        })
     }
 
     /// Takes the next chord of the arc under way; `false` when there is none.

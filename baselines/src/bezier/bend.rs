@@ -7,12 +7,12 @@
 //! it join there without acceleration. Not here: changes of speed.
 
 use super::quintic::{Offset, PARTS, Quintic};
-use crate::STRAIGHT;
-use crate::corner::shape::{BlendShape, Form};
 use toolglide_kinematics::{
     Corner, Limits, MoveRange, PathLimits, Piece, Sample, Vector, largest_multiple,
 };
 use toolglide_profiles::{Boundary, SCurveBoundary};
+use toolglide_smoothing::parts::STRAIGHT;
+use toolglide_smoothing::{BlendShape, Form};
 
 /// Pieces of one corner: its parts, and one on each straight side.
 pub(super) const PIECES: usize = PARTS + 2;

@@ -5,11 +5,12 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use proptest::prelude::*;
+use toolglide_baselines::{BezierSmoothing, plan_bezier};
 use toolglide_kinematics::{
     Arc, AxisLimits, Feedrate, Limits, MotionPlanner, Move, Piece, Tolerance, Toolpath, Trajectory,
     Vector,
 };
-use toolglide_smoothing::{BezierSmoothing, Settings, plan, plan_bezier};
+use toolglide_smoothing::{Settings, plan};
 use toolglide_verify::{Report, verify};
 
 /// Share of the tolerance that a corner with long legs must use.

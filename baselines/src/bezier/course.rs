@@ -5,13 +5,13 @@
 //! stop always fits is its promise. Not here: the corners themselves.
 
 use super::bend::{BezierBlend, PIECES};
-use crate::corner::shape::BlendShape;
-use crate::lookahead::unroll::{MAX_PIECES, corner_between, unroll_leg};
-use crate::lookahead::window::{Link, Window};
-use crate::segment::Segment;
-use crate::segment_merger::{ROUNDING_SHARE, SegmentMerger, Vertex};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, MoveRange, Pause, Piece, Vector};
+use toolglide_smoothing::BlendShape;
+use toolglide_smoothing::parts::{
+    Link, MAX_PIECES, ROUNDING_SHARE, Segment, SegmentMerger, Vertex, Window, corner_between,
+    unroll_leg,
+};
 
 /// Corners that the look-ahead window sees.
 const WINDOW: usize = 256;
@@ -19,6 +19,7 @@ const WINDOW: usize = 256;
 /// Plans a stream of vertices, from rest to rest.
 #[derive(Clone, Debug)]
 pub(super) struct Course<const N: usize> {
+    /// Limits of corners.
     limits: Limits<N>,
     merger: SegmentMerger<N>,
     /// The last leg, whose end is still open.
@@ -38,9 +39,10 @@ pub(super) struct Course<const N: usize> {
 }
 
 impl<const N: usize> Course<N> {
-    pub(super) fn new(start: Vector<N>, limits: Limits<N>) -> Self {
+    /// A course of legs within `limits`, whose corners are within others.
+    pub(super) fn new(start: Vector<N>, limits: Limits<N>, corners: Limits<N>) -> Self {
         Self {
-            limits,
+            limits: corners,
             merger: SegmentMerger::new(start, limits, ROUNDING_SHARE),
             pending: None,
             corner: BezierBlend::STOP,
