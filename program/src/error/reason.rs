@@ -41,7 +41,10 @@ pub enum Reason {
         language: &'static str,
     },
     /// A control byte: this is not a text.
-    #[error("byte 0x{byte:02x} does not belong into a text; is this a binary file?")]
+    #[error(
+        "byte 0x{byte:02x} does not belong into a text; {}",
+        if *byte == b'\r' { "lines end in LF or CR LF, and not in CR alone" } else { "is this a binary file?" }
+    )]
     ControlByte {
         /// The byte.
         byte: u8,

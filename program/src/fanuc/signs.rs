@@ -1,7 +1,8 @@
 //! Recognises programs for FANUC and Haas by what no program for LinuxCNC can have.
 //!
 //! Signs are statements of macro B (`IF [`, `WHILE [`, `GOTO 1`, `DO1`, `END1`, `THEN`), codes that LinuxCNC
-//! refuses (`G65 P`, `G4 X`, `G68 R`, `G54.1 P`, `G187`, `M97 P` and others), `,R` and `,C`, and `M98 P31001` where
+//! refuses (`G65 P`, `G4 X`, `G68 R`, `G54.1 P`, `G187`, `M97 P` and others), `,R` and `,C`, orders to print, expressions
+//! without brackets (`#1=#1+1`), and `M98 P31001` where
 //! program 1001 is in the file. What both have, such as `#1=` and `M98 P1000`, is no sign.
 
 use crate::block::code::Code;
@@ -102,6 +103,14 @@ fn has_sign(line: &[u8], calls: &mut Vec<u32>) -> bool {
     if keyword(b"IF", b"[") || keyword(b"WHILE", b"[") || keyword(b"GOTO", b"0123456789#[") {
         return true;
     }
+    let orders = [&b"POPEN"[..], b"PCLOS", b"DPRNT", b"BPRNT", b"SETVN"];
+    let ordered = orders.iter().any(|order| {
+        let here = line.get(at..at + order.len());
+        here.is_some_and(|here| here.eq_ignore_ascii_case(order))
+    });
+    if ordered || computes_bare(line.get(at..).unwrap_or_default()) {
+        return true;
+    }
     let (mut codes, mut letters) = (Vec::new(), Vec::new());
     let mut call = false;
     while let Some(&byte) = line.get(at) {
@@ -169,6 +178,35 @@ fn has_sign(line: &[u8], calls: &mut Vec<u32>) -> bool {
             .any(|(code, wanted)| codes.contains(code) && asks(wanted))
 }
 
+/// Whether a line sets a variable to an expression that stands in no brackets, as in `#1=#1+1`.
+fn computes_bare(line: &[u8]) -> bool {
+    if line.first() != Some(&b'#') {
+        return false;
+    }
+    let mut depth = 0_u32;
+    let (mut equals, mut value) = (false, false);
+    for (index, &byte) in line.iter().enumerate() {
+        match byte {
+            b'(' | b';' | b'<' => return false,
+            b'[' => depth += 1,
+            b']' => {
+                depth = depth.saturating_sub(1);
+                value = equals;
+            }
+            b' ' | b'\t' => {}
+            _ if depth > 0 => {}
+            b'=' => equals = true,
+            // Both languages have `ATAN[ ]/[ ]`.
+            b'/' if line.get(index + 1) == Some(&b'[') => value = false,
+            b'+' | b'-' | b'*' | b'/' if equals && value => return true,
+            // A second assignment or a word behind the first one.
+            b'#' if value => return false,
+            _ => value = equals && (byte.is_ascii_digit() || byte == b'.'),
+        }
+    }
+    false
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,6 +226,12 @@ mod tests {
             "M97 P100",
             "G4 X2.",
             "N5 G04 U1.5",
+            "#1=#1+1",
+            "#100 = 5.*#2",
+            "N5 #1=SIN[30]*2",
+            "#[#1+2]=[3]-1",
+            "POPEN",
+            "DPRNT[X#1[44]]",
             "G5 P10000",
             "G05.1 Q1",
             "G1 X10,R2",
@@ -206,6 +250,12 @@ mod tests {
             "G4 P2 X1",
             "G4 P0.5\nG1 X4",
             "G4 F2",
+            "#1=-5",
+            "#1=[#1+1]",
+            "#1=#2 #3=4",
+            "#1=ATAN[1]/[2]",
+            "#1 = 2 (a+b)",
+            "#<_a>=1",
             "; IF [a] GOTO 1",
             "(G65 P1)",
             "PARTNO/G65, P1",

@@ -12,6 +12,9 @@ pub const LONGEST_LINE: usize = 64 * 1024;
 /// The mark that some editors put before a text in UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
+/// The mark that ends a text of DOS, `SUB`.
+const END_OF_FILE: u8 = 0x1a;
+
 /// Reads lines into one buffer.
 #[derive(Debug)]
 pub(crate) struct Lines<R> {
@@ -59,6 +62,12 @@ impl<R: BufRead> Lines<R> {
         }
         if self.count == 1 && is_utf_16(&self.buffer) {
             return Err(Reason::Utf16);
+        }
+        // Files of DOS may end with this.
+        if self.buffer.first() == Some(&END_OF_FILE) {
+            self.buffer.clear();
+            self.count -= 1;
+            return Ok(false);
         }
         if self.buffer.last() == Some(&b'\n') {
             self.buffer.pop();
@@ -128,6 +137,12 @@ mod tests {
         ] {
             assert_eq!(all(text).len(), 1, "{text:?}");
         }
+    }
+
+    #[test]
+    fn a_text_of_dos_ends_at_its_mark() {
+        assert_eq!(all(b"G0\r\n\x1a"), [&b"G0"[..]], "mark");
+        assert_eq!(all(b"G0\n\x1a\0\0\nG1"), [&b"G0"[..]], "what follows it");
     }
 
     #[test]
