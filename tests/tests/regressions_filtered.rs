@@ -289,3 +289,14 @@ fn an_arc_with_a_large_tolerance_leads_to_a_long_line_with_a_small_one() {
         }
     }
 }
+
+/// Behind a full stop nothing is in the window together with what is slow before it.
+#[test]
+#[rustfmt::skip]
+fn a_rapid_of_a_tenth_of_a_micrometre_behind_a_slow_arc_is_no_slower_than_stopping() {
+    let course = Course { start: [0.0, 0.0], legs: vec![
+    go(arc([10.750735505888763, -7.391910340745619], [-1.2996552337876022, -2.3912368436733082], [0, 1], false, 0), 4.622769331242687, 0.003456145646628151),
+    go(Lead::Line([-1.2996552337876022, -2.3910955567224246]), INF, 0.003456145646628151),
+] };
+    holds(&course, &[[10.000000000000002, 2735.9463453273484, 8207.839035982046]; 2]);
+}

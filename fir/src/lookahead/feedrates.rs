@@ -77,7 +77,8 @@ impl<const N: usize> LookAhead<N> {
     /// How far the window reaches to either side of a corner at a feedrate.
     fn reach_beside(&self, corner: usize, feed: f64) -> f64 {
         let pulse = &self.pulses[corner];
-        let overlap = if pulse.pass || corner < self.fixed {
+        let stops = !pulse.pass && pulse.overlap <= 0.0;
+        let overlap = if pulse.pass || corner < self.fixed || stops {
             pulse.overlap
         } else {
             self.overlap_within(corner, feed)
