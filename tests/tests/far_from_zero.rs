@@ -123,3 +123,37 @@ fn a_slow_line_is_divided_near_its_start_without_a_jump() {
         assert!(report.passes(), "{}: {:#?}", method.name(), report.examples);
     }
 }
+
+/// Where an axis is all but locked, a leg reaches its velocity within less than coordinates can tell.
+#[test]
+fn a_leg_along_a_locked_axis_is_not_divided_at_its_start() {
+    let axis = |velocity| AxisLimits::new(velocity, 16_833.0, 278_603.0).unwrap();
+    let limits = Limits::new([axis(1e-7), axis(145.9)]);
+    let course = Course {
+        start: [-337_364.418_484_999, -276_683.977_962_386_6],
+        legs: vec![
+            go(
+                Lead::Line([-337_364.414_250_203_8, -276_683.976_720_326]),
+                130.7,
+                0.16,
+            ),
+            go(
+                Lead::Line([-1_337_364.414_250_203_8, -276_666.744_516_457]),
+                1e9,
+                3e-4,
+            ),
+            go(
+                Lead::Line([-1_337_374.097_545_090_4, -276_631.161_765_437]),
+                0.26,
+                0.47,
+            ),
+        ],
+    };
+    let path = course.toolpath();
+    for method in toolglide_smoothing::Method::ALL {
+        let settings = toolglide_smoothing::Settings::new(limits).with_method(method);
+        let motion = toolglide_smoothing::plan(&path, &settings).unwrap();
+        let report = verify(&motion, &path, &limits);
+        assert!(report.passes(), "{}: {:#?}", method.name(), report.examples);
+    }
+}

@@ -11,6 +11,9 @@ use crate::lookahead::corners::room_beside;
 use crate::segment::Segment;
 use crate::segment_merger::{STRAIGHT_SHARE, Vertex, vertex_of};
 
+/// Shortest first part of a leg, mm: coordinates of the largest machine still tell its ends apart.
+const MIN_PART: f64 = 1e-3;
+
 impl<const N: usize> Stretches<N> {
     /// Divides the plan on a leg where it is long enough, and the few legs before it are turned corner by corner for
     /// certain; what is left of it to be planned.
@@ -23,7 +26,7 @@ impl<const N: usize> Stretches<N> {
         if !certain {
             return leg;
         }
-        let room = room_beside(&leg, &self.limits);
+        let room = room_beside(&leg, &self.limits).max(MIN_PART);
         if leg.length <= room + room.max(way_in(&leg)) {
             return leg;
         }

@@ -195,8 +195,8 @@ impl<const N: usize> Corners<N> {
                 ..leg
             };
             self.join(along, whole);
+            self.divide();
         }
-        self.divide();
     }
 
     /// Takes the vertices of one more leg and ends the motion on it, cruising at a distance from its start, instead
