@@ -89,6 +89,8 @@ impl<const N: usize> Move<N> {
                 bound: LONGEST_DURATION,
             });
         }
+        // Minus zero is zero.
+        let duration = duration.abs();
         Ok(Self {
             path: Path::Dwell { duration },
             feedrate: Feedrate::RAPID,
@@ -306,6 +308,9 @@ mod tests {
             "a coordinate is 1e150 mm, but may be at most 1e7 mm"
         );
         assert!(Move::<2>::dwell(1e9, tolerance(0.1)).is_ok(), "the longest");
+        let none = Move::<2>::dwell(-0.0, tolerance(0.1)).unwrap();
+        let sign = matches!(none.path(), Path::Dwell { duration } if duration.is_sign_positive());
+        assert!(sign, "minus zero is zero: {none:?}");
         assert!(
             matches!(
                 Move::<2>::dwell(1.1e9, tolerance(0.1)),

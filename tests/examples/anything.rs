@@ -8,8 +8,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 use toolglide_tests::anything::{Dice, Tally, try_all};
 
-/// Seeds that take more processor time than this are told, with their number.
+/// Seeds that take more processor time than this are told, with their number, and more for each second of motion.
 const LONG: Duration = Duration::from_secs(5);
+const PER_SECOND: f64 = 0.3;
+
+/// Most that is granted for the motion.
+const MAX_SECONDS: f64 = 100.0;
 
 /// Processor time of this thread, as Linux tells it; none elsewhere.
 fn processor_time() -> Duration {
@@ -35,18 +39,21 @@ fn main() -> std::process::ExitCode {
         let tried = catch_unwind(AssertUnwindSafe(|| {
             try_all(&mut Dice::of_seed(seed), &wanted)
         }));
+        let mut allowed = LONG;
         let lasted = processor_time().saturating_sub(begin);
         match tried {
             Ok(tally) => {
                 all.judged += tally.judged;
                 all.refused += tally.refused;
+                let lasting = (PER_SECOND * tally.lasting).min(MAX_SECONDS);
+                allowed += Duration::from_secs_f64(lasting.max(0.0));
             }
             Err(_) => {
                 failed += 1;
                 println!("seed {seed} failed");
             }
         }
-        if lasted > LONG {
+        if lasted > allowed {
             long += 1;
             println!("seed {seed} took {:.1} s", lasted.as_secs_f64());
         }
@@ -55,7 +62,7 @@ fn main() -> std::process::ExitCode {
         }
     }
     println!(
-        "{count} seeds: {} plans judged, {} refusals, {failed} failed, {long} above {} s, the longest {:.2} s (seed {})",
+        "{count} seeds: {} plans judged, {} refusals, {failed} failed, {long} above {} s and what motion earns, the longest {:.2} s (seed {})",
         all.judged,
         all.refused,
         LONG.as_secs(),

@@ -130,6 +130,8 @@ pub struct Tally {
     pub judged: u64,
     /// What constructors and planners refused.
     pub refused: u64,
+    /// How long the motions last together that were judged, s.
+    pub lasting: f64,
 }
 
 /// Draws limits and a path in one to three axes, plans them by every planner whose name is wanted, and has each
@@ -164,6 +166,7 @@ fn try_axes<const N: usize>(dice: &mut Dice<'_>, wanted: &dyn Fn(&str) -> bool) 
         match outcome {
             Ok(report) => {
                 tally.judged += 1;
+                tally.lasting += report.cycle_time;
                 assert!(
                     report.passes(),
                     "{name}: {} violations, {:#?}\n{limits:?}\n{path:?}",
