@@ -5,6 +5,8 @@
 //! corner motions [`Interrupted`] and [`Uninterrupted`] can be used by themselves. This crate does
 //! not know filters, machines or programs.
 
+mod arc_parts;
+mod bend;
 mod chords;
 mod corner;
 mod lookahead;
@@ -15,6 +17,7 @@ mod segment;
 mod segment_merger;
 mod short_segments;
 mod stretch;
+mod work;
 
 pub use corner::interrupted::Interrupted;
 pub use corner::shape::{BlendShape, CornerBlend, Form, Part};
@@ -22,10 +25,12 @@ pub use corner::stop_start::StopStart;
 pub use corner::uninterrupted::Uninterrupted;
 pub use method::{Method, Settings};
 pub use planner::{KinematicSmoothing, plan};
+pub use work::Work;
 
 /// Building blocks of the planner, for planners of other corners: chords of arcs, merged segments, the look-ahead window, and
 /// how legs become pieces.
 pub mod parts {
+    pub use crate::bend::Bend;
     pub use crate::chords::Chords;
     pub use crate::lookahead::unroll::{MAX_PIECES, corner_between, unroll_leg};
     pub use crate::lookahead::window::{Link, Window};

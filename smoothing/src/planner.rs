@@ -1,17 +1,18 @@
 //! Runs the stages of kinematic corner smoothing, from moves to pieces.
 //!
 //! Source: chapter 3. Moves become straight vertices; stretches of fine moves may be travelled with
-//! superposed corners, everything else corner by corner. Not here: any formula.
+//! superposed corners, as are arcs, everything else corner by corner. Not here: any formula.
 
-use crate::chords::Chords;
+use crate::arc_parts::{Part, Parts, without_bends};
 use crate::lookahead::corners::Corners;
 use crate::method::{Method, Settings};
 use crate::section::Sections;
 use crate::segment_merger::Vertex;
 use crate::stretch::{LONGEST_ARC, Stretches};
+use crate::work::Work;
 use toolglide_kinematics::{
-    Arc, MotionPlanner, Move, MoveRange, Path, PathCursor, Pause, Piece, Plan, PlanError, Toolpath,
-    Vector,
+    MotionPlanner, Move, MoveRange, Path, PathCursor, Pause, Piece, Plan, PlanError, Tolerance,
+    Toolpath, Vector,
 };
 
 /// Plans kinematic corner smoothing while the path is being read.
@@ -34,7 +35,7 @@ use toolglide_kinematics::{
 pub struct KinematicSmoothing<const N: usize> {
     intake: PathCursor<N>,
     stops: bool,
-    arc: Option<(Chords<N>, Move<N>, u32)>,
+    arc: Option<(Parts<N>, Move<N>, u32)>,
     route: Route<N>,
 }
 
@@ -56,24 +57,37 @@ impl<const N: usize> KinematicSmoothing<N> {
             arc: None,
             route: match settings.method {
                 Method::Kcs => Route::Sections(Box::new(Sections::new(start, settings))),
-                Method::ExactStop => Route::Stretches(Box::new(Stretches::new(start, settings))),
-                _ => Route::Corners(Box::new(Corners::new(start, settings, 1))),
+                Method::KcsLocal => Route::Corners(Box::new(Corners::new(start, settings, 1))),
+                _ => Route::Stretches(Box::new(Stretches::new(start, settings))),
             },
         }
     }
 
-    /// Takes the next chord of the arc under way; `false` when there is none.
+    /// What has been planned since the planner was made, trials included.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        match &self.route {
+            Route::Corners(corners) => Work {
+                pieces: 0,
+                corners: corners.joined(),
+            },
+            Route::Stretches(stretches) => stretches.work_done(),
+            Route::Sections(sections) => sections.work_done(),
+        }
+    }
+
+    /// Takes the next part of the arc under way; `false` when there is none.
     fn advance_arc(&mut self) -> bool {
-        let Some((chords, step, index)) = &mut self.arc else {
+        let Some((parts, step, index)) = &mut self.arc else {
             return false;
         };
-        let (step, index, bulge) = (*step, *index, chords.bulge());
-        match chords.next() {
-            Some(point) => self.take_point(&step, index, point, bulge),
+        let (step, index) = (*step, *index);
+        match parts.next() {
+            Some(part) => self.route.push(vertex_of(&step, index, &part)),
             None => {
-                let alone = self.route.takes_alone(chords);
+                let alone = self.route.takes_alone(parts);
                 self.arc = None;
-                self.route.end_arc();
+                self.route.part();
                 if alone || self.stops || step.stops() {
                     self.route.rest();
                 }
@@ -84,21 +98,13 @@ impl<const N: usize> KinematicSmoothing<N> {
         }
         true
     }
-
-    fn take_point(&mut self, step: &Move<N>, index: u32, point: Vector<N>, bulge: f64) {
-        self.route.push(vertex_of(step, index, point, bulge));
-    }
 }
 
-fn vertex_of<const N: usize>(
-    step: &Move<N>,
-    index: u32,
-    point: Vector<N>,
-    bulge: f64,
-) -> Vertex<N> {
+fn vertex_of<const N: usize>(step: &Move<N>, index: u32, part: &Part<N>) -> Vertex<N> {
     Vertex {
-        point,
-        bulge,
+        point: part.end,
+        bulge: part.off,
+        bend: part.bend,
         feedrate: step.feedrate().speed(),
         tolerance: step.tolerance(),
         serves: MoveRange::one(index),
@@ -109,7 +115,9 @@ fn vertex_of<const N: usize>(
 impl<const N: usize> Route<N> {
     fn push(&mut self, vertex: Vertex<N>) {
         match self {
-            Self::Corners(corners) => corners.push(vertex),
+            Self::Corners(corners) => {
+                without_bends(vertex).for_each(|vertex| corners.push(vertex));
+            }
             Self::Stretches(stretches) => stretches.push(vertex),
             Self::Sections(sections) => sections.push(vertex),
         }
@@ -124,36 +132,28 @@ impl<const N: usize> Route<N> {
     }
 
     /// Whether an arc is so long that it is taken from rest to rest.
-    fn takes_alone(&self, chords: &Chords<N>) -> bool {
+    fn takes_alone(&self, parts: &Parts<N>) -> bool {
         match self {
             Self::Corners(_) => false,
-            _ => chords.count() > LONGEST_ARC as f64,
+            _ => parts.chords() > LONGEST_ARC as f64,
         }
     }
 
-    /// An arc begins, and may be taken with what is beside it.
-    fn begin_arc(&mut self, arc: &Arc<N>, step: &Move<N>, index: u32) {
-        let tolerance = step.tolerance();
-        let mut chords = Chords::new(
-            *arc,
-            crate::segment_merger::MERGE_SHARE * tolerance.length(),
-        );
-        let bulge = chords.bulge();
-        let points = std::iter::from_fn(|| chords.next());
-        let vertices = points.map(|point| vertex_of(step, index, point, bulge));
+    /// An arc of some tolerance begins.
+    fn begin_arc(&mut self, tolerance: Tolerance) {
         match self {
             Self::Corners(_) => {}
-            Self::Stretches(stretches) => stretches.begin_arc(tolerance, vertices),
-            Self::Sections(sections) => sections.begin_arc(tolerance, vertices),
+            Self::Stretches(stretches) => stretches.begin_arc(tolerance),
+            Self::Sections(sections) => sections.begin_arc(tolerance),
         }
     }
 
-    /// The arc has ended.
-    fn end_arc(&mut self) {
+    /// The leg under way ends where the path has come to.
+    fn part(&mut self) {
         match self {
             Self::Corners(_) => {}
-            Self::Stretches(stretches) => stretches.end_arc(),
-            Self::Sections(sections) => sections.end_arc(),
+            Self::Stretches(stretches) => stretches.part(),
+            Self::Sections(sections) => sections.part(),
         }
     }
 
@@ -180,14 +180,6 @@ impl<const N: usize> Route<N> {
             Self::Sections(sections) => sections.pull(),
         }
     }
-
-    /// The chords of an arc.
-    fn chords_of(&self, arc: &Arc<N>, tolerance: f64) -> Chords<N> {
-        match self {
-            Self::Corners(_) => Chords::new(*arc, crate::segment_merger::MERGE_SHARE * tolerance),
-            _ => Chords::fine(*arc, crate::stretch::FINE_SHARE * tolerance),
-        }
-    }
 }
 
 impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
@@ -196,19 +188,24 @@ impl<const N: usize> MotionPlanner<N> for KinematicSmoothing<N> {
         while self.advance_arc() {}
         match next.path() {
             Path::Line { end } => {
-                self.take_point(next, index, *end, 0.0);
+                let line = Part {
+                    end: *end,
+                    bend: None,
+                    off: 0.0,
+                };
+                self.route.push(vertex_of(next, index, &line));
                 if self.stops || next.stops() {
                     self.route.rest();
                 }
             }
             Path::Arc(arc) => {
-                let chords = self.route.chords_of(arc, next.tolerance().length());
-                if self.route.takes_alone(&chords) {
+                let parts = Parts::new(*arc, next.tolerance().length());
+                if self.route.takes_alone(&parts) {
                     self.route.rest();
                 } else {
-                    self.route.begin_arc(arc, next, index);
+                    self.route.begin_arc(next.tolerance());
                 }
-                self.arc = Some((chords, *next, index));
+                self.arc = Some((parts, *next, index));
             }
             Path::Dwell { duration } => {
                 self.route.dwell(Pause {

@@ -2,19 +2,22 @@
 //!
 //! Source: the straight moves of section 3.3. Not here: how it comes about, see the merger.
 
+use crate::bend::Bend;
 use toolglide_kinematics::{MoveRange, PathLimits, Pause, Tolerance, Vector};
 
-/// A straight stretch of path.
+/// A straight stretch of path, or a part of an arc beside its chord.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<const N: usize> {
     /// Where it starts.
     pub start: Vector<N>,
     /// Where it ends.
     pub end: Vector<N>,
-    /// Unit direction.
+    /// Unit direction of its chord.
     pub direction: Vector<N>,
-    /// Length, mm.
+    /// Length of the way, mm, which is that of the arc where it bends.
     pub length: f64,
+    /// The arc where it is a chord of one.
+    pub bend: Option<Bend<N>>,
     /// Limits along the leg; the velocity is the feedrate where that is lower.
     pub limits: PathLimits,
     /// Largest speed of the moves that it serves.
@@ -41,6 +44,16 @@ impl<const N: usize> Segment<N> {
     #[must_use]
     pub fn room(&self) -> Tolerance {
         self.tolerance.less(self.deviation)
+    }
+
+    /// Direction of the way at its start.
+    pub(crate) fn entry(&self) -> Vector<N> {
+        self.bend.map_or(self.direction, |bend| bend.tangent(0.0))
+    }
+
+    /// Direction of the way at its end.
+    pub(crate) fn exit(&self) -> Vector<N> {
+        self.bend.map_or(self.direction, |bend| bend.tangent(1.0))
     }
 
     /// Its two parts before and behind a distance at which the motion cruises.

@@ -11,6 +11,7 @@
 //! moves together than for both added, and the reciprocals are norms of the move, so they are no
 //! larger for the straight line than for both moves added. Not here: motion.
 
+use crate::bend::Bend;
 use crate::segment::Segment;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{Limits, MoveRange, Pause, Tolerance, Vector};
@@ -49,6 +50,8 @@ pub struct Vertex<const N: usize> {
     pub point: Vector<N>,
     /// How far the programmed path may lie from the straight stretch that ends here.
     pub bulge: f64,
+    /// The arc whose chord ends here, where the motion is to follow it.
+    pub bend: Option<Bend<N>>,
     /// Feedrate of the stretch, mm/s.
     pub feedrate: f64,
     /// Tolerance of the stretch.
@@ -64,6 +67,7 @@ pub(crate) fn vertex_of<const N: usize>(leg: &Segment<N>) -> Vertex<N> {
     Vertex {
         point: leg.end,
         bulge: leg.deviation,
+        bend: leg.bend,
         feedrate: leg.feedrate,
         tolerance: leg.tolerance,
         serves: leg.serves,
@@ -220,6 +224,7 @@ impl<const N: usize> SegmentMerger<N> {
             deviation = deviation.max(carried.deviation);
             tolerance = tolerance.min(carried.tolerance);
         }
+        let single = self.run.len() == 1;
         self.run.clear();
         self.bounds = None;
         self.deviation = 0.0;
@@ -229,6 +234,9 @@ impl<const N: usize> SegmentMerger<N> {
             return None;
         }
         let direction = span / length;
+        // A part of an arc is never merged.
+        let bend = first.bend.filter(|_| single);
+        let length = bend.map_or(length, |bend| bend.length());
         let mut limits = self.limits.along(&direction);
         limits.velocity = limits.velocity.min(feedrate);
         let leg = Segment {
@@ -236,6 +244,7 @@ impl<const N: usize> SegmentMerger<N> {
             end: last.point,
             direction,
             length,
+            bend,
             limits,
             feedrate,
             tolerance,
@@ -386,7 +395,7 @@ impl<const N: usize> SegmentMerger<N> {
         let (Some(&before), Some(bounds)) = (self.run.last(), self.bounds) else {
             return Some(vertex.bulge);
         };
-        if self.run.len() >= MAX_MERGED {
+        if self.run.len() >= MAX_MERGED || before.bend.is_some() || vertex.bend.is_some() {
             return None;
         }
         let run = (before, bounds.slowest);

@@ -104,6 +104,7 @@ impl<const N: usize> BezierSmoothing<N> {
         self.course.push(Vertex {
             point,
             bulge,
+            bend: None,
             feedrate: step.feedrate().speed(),
             tolerance: step.tolerance(),
             serves: MoveRange::one(index),

@@ -5,10 +5,12 @@
 
 mod ways;
 
+use crate::arc_parts::{MAX_CHORDS, without_bends};
 use crate::method::Settings;
 use crate::segment::Segment;
 use crate::segment_merger::{SegmentMerger, Vertex};
 use crate::stretch::{FINE_SHARE, Stretches, stops_within};
+use crate::work::Work;
 use std::collections::VecDeque;
 use toolglide_kinematics::numeric::TIME_SLACK;
 use toolglide_kinematics::{Pause, Piece, Tolerance, Vector};
@@ -42,7 +44,6 @@ pub(crate) struct Sections<const N: usize> {
     merger: SegmentMerger<N>,
     legs: Vec<Segment<N>>,
     vertices: Vec<Vertex<N>>,
-    within_arc: bool,
     long: usize,
     /// Stops that these have room for, and that all legs have.
     long_stops: f64,
@@ -73,8 +74,7 @@ impl<const N: usize> Sections<N> {
             start,
             merger: SegmentMerger::new(start, settings.limits, FINE_SHARE),
             legs: Vec::with_capacity(MAX_HELD + 2),
-            vertices: Vec::with_capacity(MAX_HELD + 2),
-            within_arc: false,
+            vertices: Vec::with_capacity(MAX_HELD + MAX_CHORDS + 2),
             long: 0,
             long_stops: 0.0,
             stops: 0.0,
@@ -92,46 +92,30 @@ impl<const N: usize> Sections<N> {
         if self.state != State::Held {
             return;
         }
-        if !self.within_arc {
-            self.vertices.push(vertex);
-        }
+        self.vertices.extend(without_bends(vertex));
         if let Some(leg) = self.merger.push(vertex) {
             self.take(leg);
         }
         self.hold();
     }
 
-    /// An arc begins: corners are made of these vertices instead of those to come.
-    pub(crate) fn begin_arc(
-        &mut self,
-        tolerance: Tolerance,
-        vertices: impl Iterator<Item = Vertex<N>>,
-    ) {
+    /// An arc of some tolerance begins.
+    pub(crate) fn begin_arc(&mut self, tolerance: Tolerance) {
         self.begin();
-        let (own, held) = (&mut self.vertices, self.state == State::Held);
-        self.stretches.begin_arc(
-            tolerance,
-            vertices.inspect(|vertex| {
-                if held && own.len() <= MAX_HELD {
-                    own.push(*vertex);
-                }
-            }),
-        );
-        self.within_arc = true;
-        self.part();
+        self.stretches.begin_arc(tolerance);
+        self.end_leg();
     }
 
-    /// The arc has ended.
-    pub(crate) fn end_arc(&mut self) {
-        self.stretches.end_arc();
-        self.within_arc = false;
-        self.part();
+    /// The leg under way ends where the path has come to.
+    pub(crate) fn part(&mut self) {
+        self.stretches.part();
+        self.end_leg();
     }
 
     /// The motion must rest where the path has come to.
     pub(crate) fn rest(&mut self) {
         self.stretches.rest();
-        self.part();
+        self.end_leg();
         if self.state == State::Held {
             self.choose();
         }
@@ -163,6 +147,13 @@ impl<const N: usize> Sections<N> {
         self.stretches.pull()
     }
 
+    /// What has been planned so far.
+    pub(crate) fn work_done(&self) -> Work {
+        let mut work = self.stretches.work_done();
+        work.corners += self.ways.joined();
+        work
+    }
+
     /// Begins a section where the path has come to rest.
     fn begin(&mut self) {
         if self.state != State::Rested {
@@ -176,14 +167,13 @@ impl<const N: usize> Sections<N> {
         self.merger.restart(self.start);
         self.legs.clear();
         self.vertices.clear();
-        self.within_arc = false;
         self.long = 0;
         self.long_stops = 0.0;
         self.stops = 0.0;
     }
 
     /// Ends the leg under way.
-    fn part(&mut self) {
+    fn end_leg(&mut self) {
         if self.state == State::Held {
             if let Some(leg) = self.merger.flush() {
                 self.take(leg);

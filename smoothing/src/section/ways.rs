@@ -9,7 +9,7 @@ use crate::method::{Method, Settings};
 use crate::segment::Segment;
 use crate::segment_merger::{SegmentMerger, Vertex, vertex_of};
 use crate::short_segments::Effort;
-use crate::stretch::Stretches;
+use crate::stretch::{Stretches, is_tiny};
 use toolglide_kinematics::{Piece, Vector};
 
 /// Kinds of corners that are tried throughout, each for sections of so many vertices at the most: those that
@@ -67,7 +67,9 @@ impl<const N: usize> Ways<N> {
         most: f64,
     ) -> bool {
         self.effort = MAX_EFFORT.min(self.effort + EFFORT * vertices.len());
-        if legs.len() < MIN_LEGS {
+        // Arcs are followed as they are, unless they are tiny.
+        let round = legs.iter().any(|leg| leg.bend.is_some() && !is_tiny(leg));
+        if legs.len() < MIN_LEGS || round {
             return false;
         }
         let mut least = most;
@@ -135,6 +137,11 @@ impl<const N: usize> Ways<N> {
         if merger.take_carried().is_some() || coarse.len() == legs.len() {
             coarse.clear();
         }
+    }
+
+    /// Legs that have been joined in corners.
+    pub(super) fn joined(&self) -> u64 {
+        self.kinds.iter().map(Corners::joined).sum()
     }
 
     /// The next piece of what was found.

@@ -1,4 +1,4 @@
-//! Describes a section of the path as a curve over its length.
+//! Describes a section of the path, lines and arcs, as a curve over its length.
 //!
 //! Source: ours. Not here: time.
 
@@ -14,7 +14,7 @@ pub(super) struct Control<const N: usize> {
     pub(super) serves: MoveRange,
 }
 
-/// Straight legs end to end, found by the distance along them.
+/// Legs end to end, found by the distance along them.
 #[derive(Clone, Debug)]
 pub(super) struct Curve<const N: usize> {
     legs: Vec<Segment<N>>,
@@ -101,16 +101,81 @@ impl<const N: usize> Curve<N> {
             at.start
         } else if along >= at.length {
             at.end
+        } else if let Some(bend) = &at.bend {
+            bend.point(along / at.length)
         } else {
             at.start + at.direction * along
         }
+    }
+
+    /// Direction of the way at a distance on the leg that `leg_at` found.
+    #[inline]
+    pub(super) fn direction(&self, distance: f64, leg: usize) -> Vector<N> {
+        let at = &self.legs[leg];
+        at.bend.as_ref().map_or(at.direction, |bend| {
+            bend.tangent(((distance - self.marks[leg]) / at.length).clamp(0.0, 1.0))
+        })
+    }
+
+    /// Whether two legs are parts of one arc.
+    #[inline]
+    pub(super) fn are_one_arc(&self, leg: usize, other: usize) -> bool {
+        let [one, other] = [leg, other].map(|index| &self.legs[index]);
+        // Moves that lead nowhere may come before the arc in its first part.
+        one.bend.is_some() && other.bend.is_some() && one.serves.last == other.serves.last
+    }
+
+    /// How much the parts of one arc, between two of its legs, differ because its radii do.
+    pub(super) fn unevenness(&self, first: usize, last: usize) -> f64 {
+        let bends = self.legs[first..=last]
+            .iter()
+            .filter_map(|leg| leg.bend.as_ref());
+        let Some(one) = bends.clone().next() else {
+            return 0.0;
+        };
+        bends.fold(0.0, |most: f64, bend| most.max(bend.unlike(one)))
+    }
+
+    /// How far arcs between two distances, on some legs, lie from the lines between these and the ends of the legs.
+    pub(super) fn sagitta(&self, begin: f64, end: f64, first: usize, last: usize) -> f64 {
+        (first..=last).fold(0.0_f64, |most, leg| {
+            self.legs[leg].bend.as_ref().map_or(most, |bend| {
+                let length = self.marks[leg + 1].min(end) - self.marks[leg].max(begin);
+                most.max(0.125 * length * length / bend.bending())
+            })
+        })
+    }
+
+    /// The first leg of the arc that a leg belongs to, and the first behind it; the leg itself where it is straight.
+    pub(super) fn arc_around(&self, leg: usize) -> (usize, usize) {
+        let (mut first, mut end) = (leg, leg + 1);
+        while first > 0 && self.are_one_arc(first - 1, leg) {
+            first -= 1;
+        }
+        while end < self.legs.len() && self.are_one_arc(end, leg) {
+            end += 1;
+        }
+        (first, end)
     }
 
     /// The same, going straight on beyond the ends of the curve.
     #[inline]
     pub(super) fn point_beyond(&self, distance: f64, leg: usize) -> Vector<N> {
         let at = &self.legs[leg];
-        at.start + at.direction * (distance - self.marks[leg])
+        let along = distance - self.marks[leg];
+        match &at.bend {
+            None => at.start + at.direction * along,
+            Some(bend) => {
+                let share = (along / at.length).clamp(0.0, 1.0);
+                let beyond = along - share * at.length;
+                let point = bend.point(share);
+                if beyond == 0.0 {
+                    point
+                } else {
+                    point + bend.tangent(share) * beyond
+                }
+            }
+        }
     }
 }
 

@@ -31,8 +31,22 @@ const MAX_STEPS: usize = 16_384;
 /// speed by the feedrate, and the sharpening.
 const FILTERS: [(f64, f64); 3] = [(0.4, 1.0), (0.2, 0.0), (0.1, 0.0)];
 
-/// A plan this near to the least conceivable time is not improved.
-const GOOD_ENOUGH: f64 = 1.02;
+/// Time steps where arcs are tiny.
+const TINY_FILTERS: [f64; 2] = [0.8, 0.4];
+
+/// Share of the jerk that the progress has where time steps are so short that nothing of it is smoothed: setting out
+/// takes the rest.
+const MILD: f64 = 0.93;
+const WIDE: f64 = 0.3;
+
+/// How much longer than the first of them a time step is that arcs are tried with before, as a share of the time that
+/// they take, and the largest angle that it may turn by.
+const SLOW: f64 = 1.5;
+const SLOW_SHARE: f64 = 5e-4;
+const SLOW_ANGLE: f64 = 0.25;
+
+/// How much longer than enough a plan takes that is improved without leaving the arcs.
+const FOLLOWED: f64 = 1.04;
 
 /// How a motion goes on from a place where it neither gains nor loses speed.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +80,8 @@ pub(crate) struct ShortSegmentSmoother<const N: usize> {
     commands: Commands<N>,
     /// Pieces of trials that may still be judged.
     effort: usize,
+    /// Pieces that have been proposed since it was made.
+    proposed: u64,
 }
 
 impl<const N: usize> ShortSegmentSmoother<N> {
@@ -83,29 +99,95 @@ impl<const N: usize> ShortSegmentSmoother<N> {
             onward: None,
             commands: Commands::new(),
             effort: usize::MAX,
+            proposed: 0,
         }
     }
 
     /// Plans the legs from rest to rest in less than `most` seconds; the duration, or `None` when that
     /// cannot be done.
     ///
-    /// `least` is a time that no motion can undercut.
-    pub(crate) fn plan(&mut self, legs: &[Segment<N>], least: f64, most: f64) -> Option<f64> {
+    /// A plan of no more than `enough` seconds is not improved.
+    pub(crate) fn plan(&mut self, legs: &[Segment<N>], enough: f64, most: f64) -> Option<f64> {
         self.curve.set(legs);
         let ramp = self.ramp(legs);
         let mut shortest = None;
         for (share, sharpening) in FILTERS {
             let most = shortest.unwrap_or(most);
-            if shortest.is_some() && most <= GOOD_ENOUGH * least {
+            if shortest.is_some() && most <= enough {
                 break;
             }
             let filter = Filter::sharp(share * ramp, sharpening);
             if self.attempt(&filter, ramp, most, None) {
-                shortest = Some(self.spline.duration());
-                std::mem::swap(&mut self.spline, &mut self.best);
+                shortest = Some(self.keep());
             }
         }
         shortest
+    }
+
+    /// The same for legs with arcs, which are followed as they are where that takes little longer.
+    pub(crate) fn plan_round(&mut self, legs: &[Segment<N>], enough: f64) -> Option<f64> {
+        self.curve.set(legs);
+        let ramp = self.ramp(legs);
+        let slow = self.slow_share(legs, ramp);
+        let slow = (slow > SLOW * FILTERS[0].0).then_some((slow, 1.0));
+        let mut shortest: Option<f64> = None;
+        for (share, sharpening) in slow.into_iter().chain(FILTERS) {
+            let most = shortest.unwrap_or(f64::INFINITY);
+            if most <= enough || (shortest.is_some() && most > FOLLOWED * enough) {
+                break;
+            }
+            let filter = Filter {
+                lags: true,
+                inside: 1.0,
+                stiffness: if share > WIDE { 1.0 } else { MILD },
+                ..Filter::sharp(share * ramp, sharpening)
+            };
+            if self.attempt(&filter, ramp, most, None) {
+                shortest = Some(self.keep());
+            }
+        }
+        if shortest.is_some_and(|most| most <= FOLLOWED * enough) {
+            return shortest;
+        }
+        // Limits of the axes bind, so that the tolerance is worth more.
+        for (share, sharpening) in FILTERS {
+            let most = shortest.unwrap_or(f64::INFINITY);
+            let filter = Filter::sharp(share * ramp, sharpening);
+            if self.attempt(&filter, ramp, most, None) {
+                shortest = Some(self.keep());
+            }
+        }
+        shortest
+    }
+
+    /// The same for legs of arcs so small that the tolerance and the axes bind, in less than `most` seconds: the first way
+    /// that is found counts.
+    pub(crate) fn plan_tiny(&mut self, legs: &[Segment<N>], most: f64) -> Option<f64> {
+        self.curve.set(legs);
+        let ramp = self.ramp(legs);
+        TINY_FILTERS.into_iter().find_map(|share| {
+            let filter = Filter {
+                hasty: true,
+                ..Filter::sharp(share * ramp, 0.0)
+            };
+            self.attempt(&filter, ramp, most, None).then(|| self.keep())
+        })
+    }
+
+    /// A time step that loses little of the time that arcs take anyway, as a share of the ramp.
+    fn slow_share(&self, legs: &[Segment<N>], ramp: f64) -> f64 {
+        let (mut time, mut step) = (0.0, f64::INFINITY);
+        for leg in legs {
+            let speed = leg.limits.velocity;
+            time += leg.length / speed;
+            if let Some(bend) = &leg.bend {
+                let inward = speed * speed / bend.bending();
+                step = step
+                    .min(SLOW_ANGLE * bend.radius() / speed)
+                    .min((leg.room().length() / inward).sqrt());
+            }
+        }
+        step.min(SLOW_SHARE * time) / ramp
     }
 
     /// Plans the legs from where the motion that is travelled may still become another to rest, in less
@@ -138,7 +220,11 @@ impl<const N: usize> ShortSegmentSmoother<N> {
         }
         let ramp = self.ramp(legs);
         let entering = Continuation {
-            filter: Filter::sharp(step, self.best.sharpening),
+            filter: Filter {
+                lags: self.best.lags,
+                inside: self.best.inside,
+                ..Filter::sharp(step, self.best.sharpening)
+            },
             controls: [-1.0, 0.0, 1.0]
                 .map(|ticks| self.curve.control_at(distance + ticks * advance, 0)),
             progress: [1.0, 2.0].map(|ticks| distance + ticks * advance),
@@ -204,6 +290,11 @@ impl<const N: usize> ShortSegmentSmoother<N> {
     pub(crate) fn finish(&mut self) {
         self.until = self.run.pieces();
         self.onward = None;
+    }
+
+    /// Pieces that have been proposed since it was made.
+    pub(crate) fn proposed(&self) -> u64 {
+        self.proposed
     }
 
     /// Duration of what was planned last.

@@ -358,6 +358,7 @@ impl<const N: usize> ShortSegmentSmoother<N> {
                 continue;
             }
             self.effort = self.effort.checked_sub(1)?;
+            self.proposed += 1;
             if spline.excess(piece, curve, &self.limits).is_some() {
                 return None;
             }

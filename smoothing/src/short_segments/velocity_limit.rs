@@ -5,6 +5,7 @@
 //! allows is found by trying; the rest of the limits is left to changes of speed. Not here: the
 //! progress.
 
+use crate::segment::Segment;
 use crate::short_segments::curve::Curve;
 use crate::short_segments::feed_profile::{Filter, Place};
 use toolglide_kinematics::{Limits, PathLimits, Vector, largest_multiple};
@@ -19,6 +20,12 @@ const CURVATURE_TOLERANCE: f64 = 0.8;
 const LADDER: f64 = 0.95;
 /// Lowest speed tried, as a share of the feedrate.
 const LOWEST: f64 = 0.01;
+/// Share of acceleration and jerk that the curvature of an arc may use where nothing else bends.
+const STEADY_ACCELERATION: f64 = 0.93;
+const STEADY_JERK: f64 = 0.8;
+/// Share of what it leaves that changes of speed may use, and of the jerk that turning these may use.
+const STEADY_REST: f64 = 0.95;
+const STEADY_TURNING: f64 = 0.8;
 /// Share of the limits that changes of speed may use at the least.
 const MIN_REST: f64 = 0.35;
 
@@ -40,27 +47,35 @@ pub(super) fn survey<const N: usize>(
     };
     let mut last_speed = f64::INFINITY;
     let mut start = from;
+    let (mut arc_begin, mut arc_end) = (0, 0);
     for (index, leg) in curve.legs().iter().enumerate() {
         let feedrate = leg.limits.velocity * share;
         let spacing = 0.5 * feedrate * filter.step;
         let begin = curve.mark(index);
         let pieces = (leg.length / spacing).ceil().max(1.0);
         let width = leg.length / pieces;
+        if index >= arc_end {
+            (arc_begin, arc_end) = curve.arc_around(index);
+        }
+        let lead = (begin - curve.mark(arc_begin)) / width;
+        let tail = (curve.mark(arc_end) - curve.mark(index + 1)) / width;
+        let steady_limits = steady_limits(leg, limits, feedrate);
         let mut piece = 0.0;
         while piece < pieces {
-            // The middle of a long leg is far from any curvature.
-            let straight = piece > 6.5 && pieces - piece > 8.5;
-            piece = if straight { pieces - 8.0 } else { piece + 1.0 };
+            // In the middle of a long leg, or of an arc, the curvature is what it is around.
+            let straight = lead + piece > 6.5 && tail + pieces - piece > 8.5;
+            piece = if straight {
+                (pieces - (8.0 - tail).max(0.0).ceil()).max(piece + 1.0)
+            } else {
+                piece + 1.0
+            };
             let end = begin + piece * width;
             if end <= start {
                 continue;
             }
             let limits = if straight {
-                last_speed = feedrate;
-                PathLimits {
-                    velocity: feedrate,
-                    ..leg.limits
-                }
+                last_speed = steady_limits.velocity;
+                steady_limits
             } else {
                 trial.near = index;
                 let limits = trial.limits_at(0.5 * (start + end), feedrate, last_speed);
@@ -74,6 +89,44 @@ pub(super) fn survey<const N: usize>(
         }
     }
     true
+}
+
+/// What the middle of a leg allows, whatever its direction: on an arc, the speed at which curvature uses no more than
+/// its share, and what that speed leaves of acceleration and jerk to changes of it.
+fn steady_limits<const N: usize>(
+    leg: &Segment<N>,
+    limits: &Limits<N>,
+    feedrate: f64,
+) -> PathLimits {
+    let Some(bend) = &leg.bend else {
+        return PathLimits {
+            velocity: feedrate,
+            ..leg.limits
+        };
+    };
+    let [acceleration, jerk] = [limits.acceleration(), limits.jerk()].map(|limit| limit.min());
+    let radius = bend.bending();
+    let velocity = feedrate
+        .min((STEADY_ACCELERATION * acceleration * radius).sqrt())
+        .min((STEADY_JERK * jerk * radius * radius).cbrt());
+    let inward = velocity * velocity / radius;
+    let along = (acceleration * acceleration - inward * inward).sqrt() * STEADY_REST;
+    // While the speed changes, the curvature changes the direction of that acceleration, and the inward one.
+    let turning = |along: f64| 2.0 * velocity / radius * along;
+    let fastest = (2.0 / 3.0 * jerk * velocity).sqrt();
+    let along = along
+        .min(fastest)
+        .min(STEADY_TURNING * jerk * radius / (2.0 * velocity));
+    let left = (jerk * jerk - turning(along).powi(2)).max(0.0).sqrt() - inward * velocity / radius;
+    PathLimits {
+        velocity,
+        acceleration: along
+            .max(MIN_REST * acceleration)
+            .min(leg.limits.acceleration),
+        jerk: (left * STEADY_REST)
+            .max(MIN_REST * jerk)
+            .min(leg.limits.jerk),
+    }
 }
 
 /// Tries speeds at places of a curve.

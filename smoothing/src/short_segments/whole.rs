@@ -69,6 +69,9 @@ impl<const N: usize> ShortSegmentSmoother<N> {
                 step: width * ramp / f64::from(taps),
                 sharpening,
                 stiffness,
+                hasty: false,
+                lags: false,
+                inside: sharpening,
                 taps: [usize::from(taps); 2],
             };
             let most = shortest.unwrap_or(most);
@@ -92,7 +95,7 @@ impl<const N: usize> ShortSegmentSmoother<N> {
     }
 
     /// What was planned last is the best; its duration.
-    fn keep(&mut self) -> f64 {
+    pub(super) fn keep(&mut self) -> f64 {
         std::mem::swap(&mut self.spline, &mut self.best);
         self.best.duration()
     }

@@ -5,7 +5,7 @@
 //! stretch: so a path of long legs is handed out leg by leg. Not here: how long that is.
 
 use super::Stretches;
-use super::choose::{MIN_LEGS, Material};
+use super::choose::{MIN_LEGS, Material, has_arc};
 use super::travel::way_in;
 use crate::lookahead::corners::room_beside;
 use crate::segment::Segment;
@@ -22,7 +22,8 @@ impl<const N: usize> Stretches<N> {
             && !self.watched
             && self.legs.len() + 1 < MIN_LEGS
             && leg.deviation <= STRAIGHT_SHARE * leg.tolerance.length()
-            && !(self.has_arc(&[leg]) || self.has_arc(&self.legs));
+            && leg.bend.is_none()
+            && !has_arc(&self.legs);
         if !certain {
             return leg;
         }

@@ -11,21 +11,25 @@ mod vertices;
 
 use crate::lookahead::corners::Corners;
 
-use crate::method::Settings;
+use crate::method::{Method, Settings};
 use crate::segment::Segment;
 use crate::segment_merger::{MAX_MERGED, SegmentMerger, Vertex};
 use crate::short_segments::{Effort, ShortSegmentSmoother};
-use choose::{Ideal, MIN_LEGS};
+use crate::work::Work;
+use choose::{Ideal, MIN_LEGS, has_arc};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Pause, Piece, Tolerance, Vector};
 use vertices::Vertices;
 
-/// Share of the tolerance that cleaning the path may use: enough for rounding of programs and for the
-/// chords of arcs, and little enough that the curve stays fine.
+/// Share of the tolerance that cleaning the path may use: enough for rounding of programs, and little enough that the
+/// curve stays fine.
 pub(crate) const FINE_SHARE: f64 = 0.05;
 
 /// Sine of half the turn angle from which a corner is sharp: a turn of 25 degrees.
 const SHARP: f64 = 0.216;
+
+/// A part of an arc is tiny up to so many stops.
+const TINY: f64 = 0.3;
 
 /// Most legs of a stretch, but for those of an arc.
 const MAX_LEGS: usize = 4096;
@@ -39,6 +43,8 @@ const MAX_VERTICES: usize = 8192;
 /// A stretch is planned without waiting for more of the path when it has so many legs and is longer than
 /// so many stops; in a window of fewer corners as many legs, and stops in proportion.
 const LEGS_AHEAD: usize = 512;
+/// The same where some of the legs are parts of arcs, of an eighth of a turn at the most.
+const PARTS_AHEAD: usize = 64;
 const STOPS_AHEAD: f64 = 8.0;
 
 /// Plans stretch by stretch.
@@ -47,8 +53,6 @@ pub(crate) struct Stretches<const N: usize> {
     limits: Limits<N>,
     merger: SegmentMerger<N>,
     vertices: Vertices<N>,
-    /// Within an arc, the number of the first vertex after it.
-    arc: Option<u64>,
     legs: Vec<Segment<N>>,
     corners: Corners<N>,
     trial: Corners<N>,
@@ -60,8 +64,8 @@ pub(crate) struct Stretches<const N: usize> {
     ahead: f64,
     /// Legs, and stops, with which a stretch is planned without waiting for more.
     enough: (usize, f64),
-    /// Whether the legs that have not been planned turn sharply inside an arc.
-    coarse: bool,
+    /// Whether lines are turned by one kind of corner throughout.
+    forced: bool,
     /// Whether the corners under way have turned an arc: only then may stopping be faster.
     watched: bool,
     /// Whether the corners have been closed and begin again at rest.
@@ -87,7 +91,6 @@ impl<const N: usize> Stretches<N> {
             limits: settings.limits,
             merger: SegmentMerger::new(start, settings.limits, FINE_SHARE),
             vertices: Vertices::with_capacity(MAX_VERTICES + LONGEST_ARC + 2 * MAX_MERGED),
-            arc: None,
             legs: Vec::with_capacity(MAX_LEGS + LONGEST_ARC),
             corners: Corners::new(start, settings, MAX_VERTICES + LONGEST_ARC),
             trial: Corners::new(start, settings, 1),
@@ -95,7 +98,7 @@ impl<const N: usize> Stretches<N> {
             planned: 0,
             ahead: 0.0,
             enough: enough_ahead(settings.window),
-            coarse: false,
+            forced: !matches!(settings.method, Method::Kcs | Method::ExactStop),
             watched: false,
             reopen: false,
             end: start,
@@ -105,10 +108,7 @@ impl<const N: usize> Stretches<N> {
 
     /// Takes the next vertex.
     pub(crate) fn push(&mut self, vertex: Vertex<N>) {
-        let next = match self.arc {
-            Some(next) => next,
-            None => self.vertices.push(vertex),
-        };
+        let next = self.vertices.push(vertex);
         if let Some(leg) = self.merger.push(Vertex { next, ..vertex }) {
             self.take(Event::Segment(leg));
         }
@@ -121,31 +121,17 @@ impl<const N: usize> Stretches<N> {
             .forget_before(oldest.map_or(self.merger.first(), |leg| leg.vertices[0]));
     }
 
-    /// An arc of some tolerance begins: its legs are the same whatever is beside it. What corners would make of
-    /// it are these vertices instead of those to come.
-    pub(crate) fn begin_arc(
-        &mut self,
-        tolerance: Tolerance,
-        vertices: impl Iterator<Item = Vertex<N>>,
-    ) {
-        self.finish_leg();
+    /// An arc of some tolerance begins: its legs are the same whatever is beside it.
+    pub(crate) fn begin_arc(&mut self, tolerance: Tolerance) {
+        self.part();
         if self.merger.narrows(tolerance) {
             self.rest();
         }
-        for vertex in vertices {
-            self.arc = Some(self.vertices.push(vertex));
-        }
-    }
-
-    /// The arc has ended.
-    pub(crate) fn end_arc(&mut self) {
-        self.finish_leg();
-        self.arc = None;
     }
 
     /// The motion must rest where the path has come to.
     pub(crate) fn rest(&mut self) {
-        self.finish_leg();
+        self.part();
         self.take(Event::Rest);
         if let Some(carried) = self.merger.take_carried() {
             self.take(Event::Dwell(carried));
@@ -154,13 +140,21 @@ impl<const N: usize> Stretches<N> {
 
     /// The motion must pause where the path has come to.
     pub(crate) fn dwell(&mut self, pause: Pause<N>) {
-        self.finish_leg();
+        self.part();
         self.take(Event::Rest);
         let pause = match self.merger.take_carried() {
             Some(carried) => carried.then(pause),
             None => pause,
         };
         self.take(Event::Dwell(pause));
+    }
+
+    /// What has been planned so far.
+    pub(crate) fn work_done(&self) -> Work {
+        Work {
+            pieces: self.superposer.proposed(),
+            corners: self.corners.joined() + self.trial.joined(),
+        }
     }
 
     /// Where the motion that has been pulled ends, at rest.
@@ -201,7 +195,8 @@ impl<const N: usize> Stretches<N> {
         self.take(Event::Close);
     }
 
-    fn finish_leg(&mut self) {
+    /// The leg under way ends where the path has come to.
+    pub(crate) fn part(&mut self) {
         if let Some(leg) = self.merger.flush() {
             self.take(Event::Segment(leg));
         }
@@ -267,27 +262,14 @@ impl<const N: usize> Stretches<N> {
         if let Some(last) = self.legs.last()
             && self.legs.len() > self.planned
         {
-            let sharp = 0.5 * (leg.direction - last.direction).norm() > SHARP;
-            let cause = if last.ends_before(&leg) {
-                if sharp || self.coarse {
-                    Some(Cause::Sharp)
-                } else {
-                    self.is_full().then_some(Cause::Full)
-                }
-            } else if sharp && !self.coarse {
-                self.coarse = true;
-                if let Some(begin) = self.begin_of_move() {
-                    // A stretch that ends before the arc, and one that begins with it.
-                    self.events.push_front(Event::Segment(leg));
-                    let mut legs = std::mem::take(&mut self.legs);
-                    self.put_back(&mut legs, begin);
-                    self.legs = legs;
-                    self.settle(Cause::Sharp);
-                    return;
-                }
-                None
-            } else {
+            let sharp = 0.5 * (leg.entry() - last.exit()).norm() > SHARP
+                && !(is_tiny(&leg) && is_tiny(last));
+            let cause = if !last.ends_before(&leg) {
                 (self.is_within_a_long_move() && self.is_full()).then_some(Cause::Full)
+            } else if sharp {
+                Some(Cause::Sharp)
+            } else {
+                self.is_full().then_some(Cause::Full)
             };
             if let Some(cause) = cause {
                 self.events.push_front(Event::Segment(leg));
@@ -305,30 +287,26 @@ impl<const N: usize> Stretches<N> {
     fn is_full(&self) -> bool {
         let fresh = &self.legs[self.planned..];
         let (legs, stops) = self.enough;
+        let legs = if has_arc(fresh) {
+            legs.min(PARTS_AHEAD)
+        } else {
+            legs
+        };
         (fresh.len() >= legs && self.ahead > stops)
             || self.legs.len() >= MAX_LEGS
-            || self.vertices.of(fresh).len() >= MAX_VERTICES
-    }
-
-    /// The leg with which the move of the last one begins, when there are others before it that have not
-    /// been planned.
-    fn begin_of_move(&self) -> Option<usize> {
-        (self.planned + 1..self.legs.len())
-            .rev()
-            .find(|&index| self.legs[index - 1].ends_before(&self.legs[index]))
+            || self.vertices.count(fresh) >= MAX_VERTICES
     }
 
     /// Whether the last legs belong to one move that rests at both ends, because it is so long.
     fn is_within_a_long_move(&self) -> bool {
         let fresh = &self.legs[self.planned..];
-        fresh.len() > LONGEST_ARC
-            && !fresh[fresh.len() - LONGEST_ARC - 1].ends_before(&fresh[fresh.len() - 1])
+        let begin = fresh.partition_point(|leg| leg.ends_before(&fresh[fresh.len() - 1]));
+        self.vertices.count(&fresh[begin..]) > LONGEST_ARC
     }
 
     /// Plans the stretch that has been collected.
     fn settle(&mut self, cause: Cause) {
         self.ahead = 0.0;
-        self.coarse = false;
         let mut legs = std::mem::take(&mut self.legs);
         if self.planned > 0 {
             self.go_on(&mut legs, cause);
@@ -355,6 +333,12 @@ enum Cause {
     Sharp,
     /// There is no room for more.
     Full,
+}
+
+/// Whether a leg belongs to an arc so small that the motion hardly changes its speed on it: between two such arcs a
+/// corner is superposed like the arcs.
+pub(crate) fn is_tiny<const N: usize>(leg: &Segment<N>) -> bool {
+    leg.bend.is_some() && stops_within(leg) < TINY
 }
 
 /// Length of a leg as a share of what a stop takes.

@@ -5,9 +5,10 @@
 //! known path is reached at rest sooner that way than by a rest before it. Not here: plans from rest to
 //! rest.
 
-use super::choose::{Choice, Material};
+use super::choose::{Choice, Material, has_arc, least_alone};
 use super::{Cause, Event, MAX_LEGS, SHARP, Stretches};
 use crate::segment::Segment;
+use crate::segment_merger::vertex_of;
 use toolglide_kinematics::PathLimits;
 use toolglide_kinematics::numeric::LENGTH_SLACK;
 use toolglide_profiles::SpeedRamp;
@@ -52,14 +53,14 @@ impl<const N: usize> Stretches<N> {
     pub(super) fn set_out(&mut self, legs: &mut Vec<Segment<N>>, cause: Cause) {
         match self.decide(legs) {
             Choice::Corners(material) => {
-                self.watched |= self.has_arc(legs);
+                self.watched |= has_arc(legs);
                 self.turn(legs, material);
                 self.pass(legs);
             }
             Choice::Superposed(entry) => {
                 match entry {
                     Some(entry) => self.corners.close_cruising(
-                        self.vertices.of(&legs[..1]),
+                        std::iter::once(vertex_of(&legs[0])),
                         entry.distance,
                         entry.speed,
                     ),
@@ -125,7 +126,7 @@ impl<const N: usize> Stretches<N> {
     /// faster.
     pub(super) fn plan_entering(&mut self, legs: &[Segment<N>]) -> Option<(Entry, f64)> {
         let first = legs.first()?;
-        if self.has_arc(&legs[..1]) {
+        if first.bend.is_some() {
             return None;
         }
         let (speed, rise, distance) = entering_on(first);
@@ -136,23 +137,33 @@ impl<const N: usize> Stretches<N> {
         } else {
             self.superposer.planned() - before
         };
-        let duration = self.superposer.plan_entering(legs, distance, speed, most)?;
-        let entry = Entry { distance, speed };
         self.trial.follow(&self.corners);
         self.trial
-            .close_cruising(self.vertices.of(&legs[..1]), distance, speed);
-        Some((entry, self.trial.duration() + duration))
+            .close_cruising(std::iter::once(vertex_of(&legs[0])), distance, speed);
+        let until = self.trial.duration();
+        if until.is_infinite() {
+            // Corners of one kind may leave too little of the leg.
+            return None;
+        }
+        let duration = self.superposer.plan_entering(legs, distance, speed, most)?;
+        Some((Entry { distance, speed }, until + duration))
     }
 
     /// Plans a stretch from where the motion under way may still go on, or else brings that to rest where
     /// it was planned to.
     pub(super) fn go_on(&mut self, legs: &mut Vec<Segment<N>>, cause: Cause) {
         let fresh = &legs[self.planned..];
+        // Nothing from rest to rest takes less.
+        let sure = self.superposer.remaining() + least_alone(fresh);
+        if has_arc(fresh) && self.superposer.plan_onward(legs, sure).is_some() {
+            self.travel(legs, cause);
+            return;
+        }
         let apart = match cause {
             _ if fresh.is_empty() => None,
             // Arcs by themselves may be superposed where all moves stop; of lines, stops are among corners.
-            Cause::Full if self.has_arc(fresh) => Some(self.choose(fresh).1),
-            Cause::Full => Some(self.without_superposing(fresh).1),
+            Cause::Full if has_arc(fresh) => Some(self.choose(fresh).1),
+            Cause::Full => Some(self.by_corners(fresh).0),
             // Where the stretch is not cut only for its length, corners, which have not to rest at its ends,
             // may be faster.
             _ => match self.choose(fresh) {
@@ -172,6 +183,7 @@ impl<const N: usize> Stretches<N> {
             self.end = last.end;
             legs.clear();
             if !is_last
+                && last.bend.is_none()
                 && apart.is_none()
                 && let Some((point, speed)) = self.superposer.leave()
             {

@@ -1,9 +1,9 @@
 //! Stores the vertices of segments that may still be planned corner by corner.
 //!
 //! Source: ours. Corners have more of the tolerance to merge with than fine stretches have, and merge
-//! best what has not been merged before. For the same reason their arcs have fewer chords. Not here:
-//! either merging.
+//! best what has not been merged before. Arcs are chords to them. Not here: either merging.
 
+use crate::arc_parts::{chords_of, without_bends};
 use crate::segment::Segment;
 use crate::segment_merger::Vertex;
 use std::collections::VecDeque;
@@ -40,8 +40,23 @@ impl<const N: usize> Vertices<N> {
         }
     }
 
-    /// The vertices of consecutive legs.
-    pub(super) fn of(&self, legs: &[Segment<N>]) -> Copied<Iter<'_, Vertex<N>>> {
+    /// The vertices of consecutive legs, those of chords where arcs bend.
+    pub(super) fn of(&self, legs: &[Segment<N>]) -> impl Iterator<Item = Vertex<N>> + '_ {
+        self.kept(legs).flat_map(without_bends)
+    }
+
+    /// How many these are.
+    pub(super) fn count(&self, legs: &[Segment<N>]) -> usize {
+        self.kept(legs).map(|vertex| chords_of(&vertex)).sum()
+    }
+
+    /// How many of these are chords of arcs.
+    pub(super) fn chords(&self, legs: &[Segment<N>]) -> usize {
+        let vertices = self.kept(legs).filter(|vertex| vertex.bend.is_some());
+        vertices.map(|vertex| chords_of(&vertex)).sum()
+    }
+
+    fn kept(&self, legs: &[Segment<N>]) -> Copied<Iter<'_, Vertex<N>>> {
         let range = match legs {
             [first, .., last] => self.place(first.vertices[0])..self.place(last.vertices[1]),
             [only] => self.place(only.vertices[0])..self.place(only.vertices[1]),

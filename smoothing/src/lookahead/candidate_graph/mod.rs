@@ -89,7 +89,7 @@ impl CandidateGraph {
         self.spent = other.spent;
     }
 
-    /// After it has been finished: the time from the beginning to the end.
+    /// After it has been finished: the time from the beginning to the end; infinite where there is no way.
     pub(crate) fn duration(&self) -> f64 {
         self.spent
     }
@@ -232,6 +232,9 @@ impl CandidateGraph {
                     *cost -= base;
                 }
                 self.spent += base;
+            } else {
+                // Where no stop is among the candidates, there may be no way to the end.
+                self.spent = f64::INFINITY;
             }
         }
     }

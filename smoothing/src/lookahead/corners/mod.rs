@@ -51,6 +51,8 @@ pub(crate) struct Corners<const N: usize> {
     /// How the next leg to be unrolled begins.
     from: Choice,
     pieces: VecDeque<Piece<N>>,
+    /// Legs that have been joined in corners since it was made.
+    joined: u64,
 }
 
 impl<const N: usize> Corners<N> {
@@ -84,6 +86,7 @@ impl<const N: usize> Corners<N> {
             last_offered: None,
             from: AT_REST,
             pieces: VecDeque::with_capacity(MAX_PIECES + 1),
+            joined: 0,
         }
     }
 
@@ -286,6 +289,11 @@ impl<const N: usize> Corners<N> {
         self.duration()
     }
 
+    /// Legs that have been joined in corners since it was made.
+    pub(crate) fn joined(&self) -> u64 {
+        self.joined
+    }
+
     /// After it has been closed: the time from the beginning to the end.
     pub(crate) fn duration(&self) -> f64 {
         self.lattice.duration()
@@ -318,6 +326,7 @@ impl<const N: usize> Corners<N> {
 
     /// Takes a leg, or a part of one of some length.
     fn join(&mut self, mut leg: Segment<N>, whole: f64) {
+        self.joined += 1;
         if self.is_cruising()
             && let Some(course) = self.course
         {

@@ -30,6 +30,8 @@ const ROUNDS: usize = 6;
 const SLOWER: f64 = 0.995;
 /// The most that a place is slowed by in one round.
 const SLOWEST: f64 = 0.85;
+/// What the power grows by from round to round with which places are slowed in haste.
+const HASTE: f64 = 0.4;
 /// Most places on one stretch.
 pub(super) const MAX_PLACES: usize = 16_384;
 
@@ -42,6 +44,12 @@ pub(super) struct Filter {
     pub(super) sharpening: f64,
     /// How much more jerk the progress may have than the legs: what the spline makes of it has less.
     pub(super) stiffness: f64,
+    /// The same inside an arc, where nothing bends abruptly.
+    pub(super) inside: f64,
+    /// Whether the motion lags behind the progress where that gains speed, so that no speed overshoots.
+    pub(super) lags: bool,
+    /// Whether places are slowed by more from round to round.
+    pub(super) hasty: bool,
     /// Lengths, in steps, of the two means that are taken of the control points.
     pub(super) taps: [usize; 2],
 }
@@ -53,6 +61,9 @@ impl Filter {
             step,
             sharpening,
             stiffness: 1.0,
+            lags: false,
+            hasty: false,
+            inside: sharpening,
             taps: [1, 1],
         }
     }
@@ -129,6 +140,9 @@ pub(super) struct FeedProfile {
     /// Share of the feedrate that is used, and what it must be lowered by next.
     share: f64,
     lower: f64,
+    /// Power of what places must be slowed by, and how it grows from round to round.
+    haste: f64,
+    growth: f64,
     places: Vec<Place>,
     /// Places at whose beginning the progress is held, without acceleration.
     holds: Vec<usize>,
@@ -144,6 +158,8 @@ impl FeedProfile {
             start: SwitchState::AT_REST,
             share: 1.0,
             lower: 1.0,
+            haste: 1.0,
+            growth: 0.0,
             places: Vec::with_capacity(MAX_PLACES + 1),
             holds: Vec::with_capacity(MAX_PLACES + 1),
             runs: Vec::with_capacity(MAX_PLACES + 1),
@@ -168,6 +184,8 @@ impl FeedProfile {
         self.start = *start;
         self.share = share;
         self.lower = 1.0;
+        self.haste = 1.0;
+        self.growth = if filter.hasty { HASTE } else { 0.0 };
         survey(
             curve,
             limits,
@@ -187,7 +205,7 @@ impl FeedProfile {
 
     /// Notes that the places around a distance must be slowed.
     pub(super) fn slow(&mut self, from: f64, to: f64, excess: &Excess) {
-        let more = |factor: f64| (factor * SLOWER).max(SLOWEST);
+        let more = |factor: f64| (factor.powf(self.haste) * SLOWER).max(SLOWEST);
         let (slower, softer) = match *excess {
             Excess::Feedrate(factor) => {
                 self.lower = self.lower.min(factor);
@@ -220,6 +238,7 @@ impl FeedProfile {
             self.holds.sort_unstable();
             self.holds.dedup();
         }
+        self.haste += self.growth;
         self.share *= std::mem::replace(&mut self.lower, 1.0) - 4.0 * LIMIT_SLACK;
         for place in &mut self.places {
             place.limits.velocity *= std::mem::replace(&mut place.slower, 1.0);

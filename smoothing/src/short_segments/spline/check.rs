@@ -4,8 +4,9 @@
 //! Bezier points bound the velocity, and where the motion runs, between the knots. Not here: what is done about
 //! it.
 
+use crate::bend::Bend;
 use crate::segment::Segment;
-use crate::short_segments::curve::{Curve, distance_to};
+use crate::short_segments::curve::{Control, Curve, distance_to};
 use crate::short_segments::spline::{Differences, Spline};
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, Vector, largest_multiple};
@@ -13,6 +14,9 @@ use toolglide_kinematics::{Limits, Vector, largest_multiple};
 /// Parts into which a piece is cut where its Bezier points are compared with the path: at first, and
 /// where that is not sharp enough.
 const PARTS: [usize; 2] = [4, 16];
+
+/// Places of a piece at which its height on a helix is compared.
+const HEIGHTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Legs beside a part of a piece that are compared with it one by one.
 const FEW: usize = 12;
@@ -54,6 +58,14 @@ impl<const N: usize> Spline<N> {
         // The velocity is a quadratic; its Bezier points, cut in two, bound the speed and each axis.
         let middle = differences.firsts[1];
         let [first, last] = [0, 1].map(|knot| differences.around(knot));
+        let round = [a, d]
+            .iter()
+            .any(|end| curve.legs()[end.leg].bend.is_some());
+        let fastest = if round {
+            largest_norm(&first, &middle, &last)
+        } else {
+            f64::INFINITY
+        };
         let mut speed = f64::INFINITY;
         for velocity in [
             first,
@@ -63,7 +75,7 @@ impl<const N: usize> Spline<N> {
             last,
         ] {
             let multiple = largest_multiple(&velocity, limits.velocity());
-            speed = speed.min(multiple.min(feedrate / velocity.norm()) * slack * step);
+            speed = speed.min(multiple.min(feedrate / velocity.norm().min(fastest)) * slack * step);
         }
         let [first, second] = accelerations;
         let changes = first.min(second).sqrt().min(jerk.cbrt());
@@ -97,6 +109,28 @@ impl<const N: usize> Spline<N> {
         Some(Excess::Curvature(nearness.sqrt()))
     }
 
+    /// Whether a piece keeps the limits of all axes in whatever direction it is turned.
+    pub(in crate::short_segments) fn is_within_any(
+        &self,
+        index: usize,
+        limits: &Limits<N>,
+    ) -> bool {
+        let step = self.step;
+        let slack = 1.0 - 2.0 * LIMIT_SLACK;
+        let Differences {
+            firsts,
+            seconds,
+            third,
+        } = self.differences(index);
+        let speed = firsts
+            .iter()
+            .fold(0.0_f64, |most, first| most.max(first.norm()));
+        let acceleration = seconds[0].norm().max(seconds[1].norm());
+        speed <= slack * step * limits.velocity().min()
+            && acceleration <= slack * step * step * limits.acceleration().min()
+            && third.norm() <= slack * step.powi(3) * limits.jerk().min()
+    }
+
     /// The tolerance by the distance between motion and path, bounded on parts of a piece; at least 1
     /// when the motion stays within the tolerance of the path, and the path of the motion.
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
@@ -113,9 +147,15 @@ impl<const N: usize> Spline<N> {
         let room = curve.legs()[first..=last]
             .iter()
             .fold(f64::INFINITY, |least, leg| least.min(leg.room().length()));
-        if b.leg == c.leg {
+        let beside = &curve.legs()[b.leg];
+        if let Some(bend) = &beside.bend
+            && curve.are_one_arc(first, last)
+        {
+            let uneven = curve.unevenness(first, last);
+            return room / (off_arc(&four, bend) + uneven).max(f64::MIN_POSITIVE);
+        }
+        if b.leg == c.leg && beside.bend.is_none() {
             // The piece lies among its control points.
-            let beside = &curve.legs()[b.leg];
             let off = four.iter().fold(0.0_f64, |most, control| {
                 most.max(distance_to(&control.point, &beside.start, &beside.end))
             });
@@ -124,12 +164,7 @@ impl<const N: usize> Spline<N> {
             }
         }
         let mut furthest = 0.0_f64;
-        let mut rest = [
-            (a.point + b.point * 4.0 + c.point) / 6.0,
-            (b.point * 2.0 + c.point) / 3.0,
-            (b.point + c.point * 2.0) / 3.0,
-            (b.point + c.point * 4.0 + d.point) / 6.0,
-        ];
+        let mut rest = bezier(&four);
         let advance = (c.distance - b.distance) / parts as f64;
         let pad = lag + 0.5 * advance.abs() + 0.5 * room + spread;
         for part in 0..parts {
@@ -143,7 +178,8 @@ impl<const N: usize> Spline<N> {
             let mut off = off + span.deviation;
             if off > room && span.legs.len() <= FEW {
                 // Beside a sharp corner the part is near one of the legs.
-                off = span.legs.iter().fold(off, |least, leg| {
+                let lines = span.legs.iter().filter(|leg| leg.bend.is_none());
+                off = lines.fold(off, |least, leg| {
                     let beside = points.iter().fold(0.0_f64, |most, point| {
                         most.max(distance_to(point, &leg.start, &leg.end))
                     });
@@ -272,6 +308,76 @@ fn split<const N: usize>(points: &[Vector<N>; 4], share: f64) -> ([Vector<N>; 4]
     ([*a, ab, abc, middle], [middle, bcd, cd, *d])
 }
 
+/// Largest length of a quadratic with these Bezier points: its square is a polynomial of fourth degree, which lies among
+/// its Bezier coefficients. Where it turns at constant length that is far less than the length of the middle point.
+fn largest_norm<const N: usize>(first: &Vector<N>, middle: &Vector<N>, last: &Vector<N>) -> f64 {
+    [
+        first.dot(first),
+        first.dot(middle),
+        (first.dot(last) + 2.0 * middle.dot(middle)) / 3.0,
+        middle.dot(last),
+        last.dot(last),
+    ]
+    .into_iter()
+    .fold(0.0, f64::max)
+    .sqrt()
+}
+
+/// The Bezier points of a piece.
+fn bezier<const N: usize>([a, b, c, d]: &[&Control<N>; 4]) -> [Vector<N>; 4] {
+    let [a, b, c, d] = [a.point, b.point, c.point, d.point];
+    [
+        (a + b * 4.0 + c) / 6.0,
+        (b * 2.0 + c) / 3.0,
+        (b + c * 2.0) / 3.0,
+        (b + c * 4.0 + d) / 6.0,
+    ]
+}
+
+/// How far a piece is from the arc to which its control points belong, bounded.
+///
+/// The square of the distance from the axis is a polynomial of sixth degree, which lies among its Bezier
+/// coefficients. Along the axis the piece is compared at a few places with the height that its angle asks for.
+fn off_arc<const N: usize>(four: &[&Control<N>; 4], bend: &Bend<N>) -> f64 {
+    let points = bezier(four).map(|point| bend.around_axis(&point));
+    let dot = |one: usize, other: usize| {
+        points[one].planar[0] * points[other].planar[0]
+            + points[one].planar[1] * points[other].planar[1]
+    };
+    let squares = [
+        dot(0, 0),
+        dot(0, 1),
+        (6.0 * dot(0, 2) + 9.0 * dot(1, 1)) / 15.0,
+        (2.0 * dot(0, 3) + 18.0 * dot(1, 2)) / 20.0,
+        (6.0 * dot(1, 3) + 9.0 * dot(2, 2)) / 15.0,
+        dot(2, 3),
+        dot(3, 3),
+    ];
+    let (least, most) = squares
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(least, most), square| {
+            (least.min(*square), most.max(*square))
+        });
+    let radius = bend.radius();
+    let radial = (most.sqrt() - radius)
+        .abs()
+        .max((radius - least.max(0.0).sqrt()).abs());
+    let Some(slope) = bend.slope() else {
+        let flat = points.iter().map(|point| point.height.norm());
+        return radial.hypot(flat.fold(0.0, f64::max));
+    };
+    let [a, b, c, d] = four.map(|control| control.point);
+    let mut axial = 0.0_f64;
+    for share in HEIGHTS {
+        let place = bend.around_axis(&at(&[a, b, c, d], share));
+        let [along, outward] = place.planar;
+        axial = axial.max((place.height - slope * along.atan2(outward)).norm());
+    }
+    let second = (c - b * 2.0 + a).norm().max((d - c * 2.0 + b).norm());
+    let between = 0.125 * (HEIGHTS[1] * HEIGHTS[1]) * second * (1.0 + slope.norm() / radius);
+    radial.hypot(axial + between)
+}
+
 /// A part of the curve as one line, and how far the curve lies from it.
 struct Span<'a, const N: usize> {
     from: Vector<N>,
@@ -285,9 +391,10 @@ impl<'a, const N: usize> Span<'a, N> {
         let (first, last) = (curve.leg_at(begin, near), curve.leg_at(end, near));
         let from = curve.point(begin, first);
         let to = curve.point(end, last);
-        let deviation = curve.legs()[first..last].iter().fold(0.0_f64, |most, leg| {
+        let corners = curve.legs()[first..last].iter().fold(0.0_f64, |most, leg| {
             most.max(distance_to(&leg.end, &from, &to))
         });
+        let deviation = corners + curve.sagitta(begin, end, first, last);
         Self {
             from,
             to,

@@ -15,6 +15,10 @@ use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
 /// Change of the progress from step to step that is nothing but rounding, relative.
 const STEADY: f64 = 1e-10;
 
+/// The same on an arc, and the binary digits of the advance that are no more than that.
+const ALIKE: f64 = 1e-9;
+const ROUNDING_BITS: u32 = 20;
+
 /// The mean of consecutive values up to an index; the first is repeated before it.
 #[allow(clippy::cast_precision_loss, reason = "counts are small")]
 pub(super) fn mean<const N: usize>(
@@ -42,6 +46,8 @@ pub(super) struct Spline<const N: usize> {
     /// Time of the first of them, since the beginning of the progress.
     pub(super) origin: f64,
     pub(super) sharpening: f64,
+    pub(super) lags: bool,
+    pub(super) inside: f64,
     /// Pieces beside one in which it may pass what it has on its path.
     around: usize,
     /// Where another progress may go on.
@@ -56,6 +62,8 @@ impl<const N: usize> Spline<N> {
             step: 0.0,
             origin: 0.0,
             sharpening: 0.0,
+            lags: false,
+            inside: 0.0,
             around: 1,
             handover: None,
         }
@@ -67,6 +75,8 @@ impl<const N: usize> Spline<N> {
         self.progress.clear();
         self.step = filter.step;
         self.sharpening = filter.sharpening;
+        self.lags = filter.lags;
+        self.inside = filter.inside;
         self.around = filter.taps[0].max(filter.taps[1]);
         self.handover = None;
     }
@@ -109,25 +119,40 @@ impl<const N: usize> Spline<N> {
     }
 
     /// Moves the control points from an index on so that the spline follows what they sample: along the
-    /// path by all that it lags behind, across it by a share.
-    pub(super) fn sharpen(&mut self, first: usize, curve: &Curve<N>, share: f64) {
+    /// path by all that it lags behind, unless it may lag, across it by a share.
+    pub(super) fn sharpen(&mut self, first: usize, curve: &Curve<N>, filter: &Filter) {
         let controls = &mut self.controls;
         let progress = self.progress[first - 1];
         let mut before = curve.control_at(progress, controls[first - 1].leg);
         for index in first..controls.len() - 1 {
             let here = controls[index];
             let after = controls[index + 1];
-            let second = after.point - here.point * 2.0 + before.point;
+            let second = (after.point - here.point * 2.0 + before.point) / 6.0;
+            let around = [before.leg, after.leg];
+            let inside = around.iter().all(|leg| curve.are_one_arc(*leg, here.leg));
+            let share = if inside {
+                filter.inside
+            } else {
+                filter.sharpening
+            };
             let lag = (after.distance - 2.0 * here.distance + before.distance) / 6.0;
             before = here;
-            // Rounding may not turn the order around.
-            let distance = (here.distance - lag)
-                .min(curve.length())
-                .max(controls[index - 1].distance);
-            let along = curve.legs()[here.leg].direction * lag;
-            let mut control = curve.control_at(distance, here.leg);
-            control.point -= (second / 6.0 - along) * share;
-            controls[index] = control;
+            let direction = curve.direction(here.distance, here.leg);
+            controls[index] = if filter.lags {
+                let across = second - direction * direction.dot(&second);
+                Control {
+                    point: here.point - across * share,
+                    ..here
+                }
+            } else {
+                // Rounding may not turn the order around.
+                let distance = (here.distance - lag)
+                    .min(curve.length())
+                    .max(controls[index - 1].distance);
+                let mut control = curve.control_at(distance, here.leg);
+                control.point -= (second - direction * lag) * share;
+                control
+            };
         }
     }
 
@@ -184,6 +209,28 @@ impl<const N: usize> Spline<N> {
                 .all(|pair| (pair[1] - pair[0] - step).abs() <= STEADY * step)
     }
 
+    /// The arc on which a piece turns at constant speed, by its number and the advance from step to step; `None` where
+    /// anything else has made the piece what it is.
+    pub(super) fn steady_turn(&self, index: usize, curve: &Curve<N>) -> Option<(u32, u64)> {
+        let (first, last) = (index.checked_sub(1)?, index + 4);
+        let [from, to] = [self.controls.get(first)?.leg, self.controls.get(last)?.leg];
+        if !curve.are_one_arc(from, to) {
+            return None;
+        }
+        let around = &self.progress[first..=last];
+        let step = around[1] - around[0];
+        let same = around
+            .windows(2)
+            .all(|pair| (pair[1] - pair[0] - step).abs() <= ALIKE * step);
+        // What is left of rounding is cut off.
+        same.then(|| {
+            (
+                curve.legs()[from].serves.last,
+                step.to_bits() >> ROUNDING_BITS,
+            )
+        })
+    }
+
     /// Speed at a control point.
     pub(super) fn speed(&self, index: usize) -> f64 {
         (self.progress[index + 1] - self.progress[index - 1]) / (2.0 * self.step)
@@ -207,7 +254,11 @@ impl<const N: usize> Spline<N> {
         }
         let next = self.origin + (settled as f64 + 2.0) * self.step;
         let onward = Continuation {
-            filter: Filter::sharp(self.step, self.sharpening),
+            filter: Filter {
+                lags: self.lags,
+                inside: self.inside,
+                ..Filter::sharp(self.step, self.sharpening)
+            },
             controls,
             progress: [0, 1].map(|offset| self.progress[settled + offset] - passed),
             start: SwitchState {
