@@ -17,5 +17,6 @@ pub mod feeds;
 pub mod filtered;
 pub mod judged;
 pub mod run;
+pub mod spectrum;
 pub mod strategies;
 pub mod stream;

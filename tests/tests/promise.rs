@@ -29,7 +29,7 @@ const TIGHTER: [f64; 4] = [1.2, 1.5, 2.0, 4.0];
 const COMPARED: [(&str, f64, f64); 5] = [
     ("kcs-interrupted", 0.004, 0.08),
     ("kcs-uninterrupted", 0.002, 0.08),
-    ("kcs-global", 0.012, 0.15),
+    ("kcs-global", 0.02, 0.15),
     ("fir", 0.14, 0.5),
     ("a smaller tolerance", 0.045, 0.25),
 ];
