@@ -92,14 +92,4 @@ pub enum FirError {
         /// Half the frequency of the set-points, Hz.
         nyquist: f64,
     },
-    /// A damping ratio lies from 0 to below 1.
-    #[error(
-        "damping ratio of the mode at {frequency} Hz is {damping}, but must be from 0 to below 1"
-    )]
-    Damping {
-        /// Frequency of the mode, Hz.
-        frequency: f64,
-        /// What was given.
-        damping: f64,
-    },
 }

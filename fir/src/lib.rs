@@ -18,8 +18,6 @@ mod ticks;
 
 pub use error::FirError;
 pub use filter::chain::{FilterChain, LONGEST_TIME_CONSTANT, MAX_FILTERS, SHORTEST_TIME_CONSTANT};
-pub use filter::mode::Mode;
-pub use filter::resonator::Resonator;
 pub use filter::train::PulseTrain;
 pub use lookahead::circle_feed::largest_circle_feed;
 pub use planner::{FirInterpolation, plan};

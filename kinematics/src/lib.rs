@@ -11,6 +11,7 @@ mod limits;
 mod machine;
 pub mod numeric;
 mod path_cursor;
+mod path_side;
 mod pause;
 mod piece;
 mod plan;
@@ -21,6 +22,7 @@ mod sample;
 mod tolerance;
 mod toolpath;
 pub mod vector;
+mod vibration;
 
 pub use arc::Arc;
 pub use axis_vector::{AxisVector, MAX_AXES, MAX_SOLUTIONS, Solutions};
@@ -30,6 +32,7 @@ pub use limits::{AxisLimits, Limits, PathLimits, largest_multiple};
 pub use machine::{Axis, AxisKind, KinematicsError, MachineKinematics};
 pub use nalgebra;
 pub use path_cursor::PathCursor;
+pub use path_side::PathSide;
 pub use pause::Pause;
 pub use piece::{MoveRange, Piece};
 pub use plan::{Plan, Sampler, Trajectory};
@@ -44,3 +47,7 @@ pub use sample::{Sample, SamplePeriod};
 pub use tolerance::{Feedrate, OrientationTolerance, Tolerance};
 pub use toolpath::{Move, Path, Toolpath, check_contact};
 pub use vector::Vector;
+pub use vibration::{
+    AxisMode, AxisModes, AxisModesError, MAX_MODES, Mode, ModeError, ModeState, Resonator,
+    Transition,
+};

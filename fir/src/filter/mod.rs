@@ -3,7 +3,6 @@
 pub(crate) mod chain;
 pub(crate) mod cubic;
 pub(crate) mod kernel;
-pub(crate) mod mode;
-pub(crate) mod resonator;
+pub(crate) mod notch;
 pub(crate) mod taps;
 pub(crate) mod train;

@@ -4,10 +4,8 @@
 //! acceleration that changes linearly is closed. Without damping its amplitude is that of the spectrum
 //! of the acceleration at its frequency. Not here: the motion.
 
-use crate::error::FirError;
-use crate::filter::mode::Mode;
-use std::f64::consts::TAU;
-use toolglide_kinematics::nalgebra::Complex;
+use super::{Mode, ModeError};
+use nalgebra::Complex;
 
 /// Arguments below this are summed as a series, dimensionless: above it the closed form loses fewer
 /// digits.
@@ -20,12 +18,12 @@ const SERIES_TERMS: u32 = 16;
 ///
 /// # Examples
 /// ```
-/// use toolglide_fir::{Mode, Resonator};
+/// use toolglide_kinematics::{Mode, Resonator};
 /// let mut resonator = Resonator::new(&Mode::new(5.0, 0.0)?);
 /// // Constant acceleration for one period leaves nothing.
 /// resonator.pass(100.0, 0.0, 0.2);
 /// assert!(resonator.displacement() < 1e-15);
-/// # Ok::<(), toolglide_fir::FirError>(())
+/// # Ok::<(), toolglide_kinematics::ModeError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonator {
@@ -38,7 +36,7 @@ impl Resonator {
     /// The oscillator of a mode.
     #[must_use]
     pub fn new(mode: &Mode) -> Self {
-        let natural = TAU * mode.frequency();
+        let natural = mode.natural();
         Self {
             pole: mode.pole(),
             natural,
@@ -50,8 +48,8 @@ impl Resonator {
     /// in Hz.
     ///
     /// # Errors
-    /// [`FirError::NotPositive`] unless the frequency is positive and finite.
-    pub fn at_frequency(frequency: f64) -> Result<Self, FirError> {
+    /// [`ModeError::Frequency`] unless the frequency is positive and finite.
+    pub fn at_frequency(frequency: f64) -> Result<Self, ModeError> {
         Mode::new(frequency, 0.0).map(|mode| Self::new(&mode))
     }
 
@@ -68,6 +66,24 @@ impl Resonator {
         self.state = self.state * decay
             - constant * (acceleration * duration)
             - linear * (jerk * duration * duration);
+    }
+
+    /// Deflection now, mm.
+    #[must_use]
+    pub fn deflection(&self) -> f64 {
+        self.state.im / self.pole.im
+    }
+
+    /// Rate of the deflection now, mm/s.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.state.re + self.pole.re * self.deflection()
+    }
+
+    /// Undamped natural frequency, rad/s.
+    #[must_use]
+    pub fn natural(&self) -> f64 {
+        self.natural
     }
 
     /// Amplitude of the free oscillation from now on, mm, before it decays.
@@ -106,30 +122,7 @@ fn integrals(z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FilterChain, Settings, plan};
-    use toolglide_kinematics::{Feedrate, Limits, Plan, Tolerance, Toolpath, Vector};
-
-    fn straight(lengths: &[f64]) -> Plan<1> {
-        let points = [0.0, 80.0].map(|x| Vector::<1>::from([x]));
-        let path = Toolpath::from_points(
-            &points,
-            Feedrate::new(50.0).unwrap(),
-            Tolerance::new(0.03).unwrap(),
-        )
-        .unwrap();
-        let chain = FilterChain::with_time_constants(lengths).unwrap();
-        let limits = Limits::uniform(500.0, 1e5, 1e9).unwrap();
-        plan(&path, &Settings::new(limits).with_chain(&chain).unwrap()).unwrap()
-    }
-
-    fn left(motion: &Plan<1>, frequency: f64, damping: f64) -> f64 {
-        let mut resonator = Resonator::new(&Mode::new(frequency, damping).unwrap());
-        for piece in motion.pieces() {
-            let start = piece.at(0.0);
-            resonator.pass(start.acceleration[0], start.jerk[0], piece.duration());
-        }
-        resonator.displacement()
-    }
+    use std::f64::consts::TAU;
 
     #[test]
     fn it_agrees_with_small_steps_of_the_differential_equation() {
@@ -163,15 +156,5 @@ mod tests {
             (amplitude / resonator.displacement() - 1.0).abs() < 1e-5,
             "{amplitude} mm"
         );
-    }
-
-    #[test]
-    fn a_matched_mode_is_left_with_less_than_a_hundredth() {
-        // Nearly unfiltered: a hundredth of a period.
-        let unfiltered = left(&straight(&[1e-3, 1e-3]), 7.4, 0.0);
-        for (mode, most) in [(7.4, 0.01), (0.95 * 7.4, 0.05), (1.05 * 7.4, 0.05)] {
-            let share = left(&straight(&[1.0 / 7.4, 0.1087]), mode, 0.0) / unfiltered;
-            assert!(share <= most, "{mode} Hz: {share}");
-        }
     }
 }
