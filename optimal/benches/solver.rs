@@ -51,6 +51,8 @@ fn segment<const N: usize>(start: Vector<N>, end: Vector<N>) -> WindowSegment<N>
         corner_tolerance: Some(0.05),
         feedrate: 100.0,
         steps: STEPS,
+        follow: None,
+        walls: [None; 2],
     }
 }
 
@@ -61,6 +63,7 @@ fn measure<const N: usize>(criterion: &mut Criterion, name: &str, segments: &[Wi
         end: EndState::rest(segments[segments.len() - 1].end),
         segments,
         limits: &limits,
+        silence: None,
     };
     let guess: Vec<f64> = segments
         .iter()

@@ -14,6 +14,39 @@ use toolglide_kinematics::numeric::TIME_SLACK;
 /// megabytes.
 const MAX_HELD: usize = 1 << 16;
 
+/// What a motion costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Cost {
+    /// s.
+    time: f64,
+    /// Integral of the square of jerk over time, mm²/s⁵.
+    energy: f64,
+}
+
+impl Cost {
+    fn of<'a, const N: usize>(pieces: impl Iterator<Item = &'a Piece<N>>) -> Self {
+        pieces.fold(Self::default(), |mut sum, piece| {
+            sum.add(piece);
+            sum
+        })
+    }
+
+    fn add<const N: usize>(&mut self, piece: &Piece<N>) {
+        self.time += piece.duration();
+        self.energy += piece.at(0.0).jerk.norm_squared() * piece.duration();
+    }
+
+    /// Whether it is faster than another motion, or about as fast with less jerk.
+    fn beats(&self, other: &Self, indifference: f64) -> bool {
+        let room = indifference * self.time.max(other.time);
+        if (self.time - other.time).abs() <= room.max(TIME_SLACK) {
+            self.energy < other.energy
+        } else {
+            self.time < other.time
+        }
+    }
+}
+
 /// Which motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Source {
@@ -53,22 +86,27 @@ pub(crate) struct FasterOf<const N: usize> {
     /// Whether one of two motions is missing in this stretch, and in one that was led by it.
     lost: bool,
     broken: bool,
-    /// Events of this stretch that have been looked at, and how long they last, s.
+    /// Events of this stretch that have been looked at, and what they cost.
     walked: usize,
-    walked_time: f64,
+    walked_cost: Cost,
     /// By how much longer the other motion takes over what has been handed out of a stretch that is led,
     /// s.
     lead: f64,
     /// What a stop may cost, s.
     reserve: f64,
+    /// Share of a duration below which a difference does not matter.
+    indifference: f64,
+    /// Whether a stretch that is led may take longer by that share, because it has less jerk.
+    smoother: bool,
     finished: bool,
     stretches: u64,
     yielded: u64,
 }
 
 impl<const N: usize> FasterOf<N> {
-    /// Two motions at rest; a stop costs less than `reserve` seconds.
-    pub(crate) fn new(reserve: f64) -> Self {
+    /// Two motions at rest; a stop costs less than `reserve` seconds. Of durations that differ by less than the
+    /// share `indifference` the motion with less jerk is taken.
+    pub(crate) fn new(reserve: f64, indifference: f64) -> Self {
         Self {
             mine: VecDeque::with_capacity(MAX_HELD + 1),
             theirs: VecDeque::with_capacity(MAX_HELD + 2),
@@ -78,9 +116,11 @@ impl<const N: usize> FasterOf<N> {
             lost: false,
             broken: false,
             walked: 0,
-            walked_time: 0.0,
+            walked_cost: Cost::default(),
             lead: 0.0,
             reserve,
+            indifference,
+            smoother: false,
             finished: false,
             stretches: 0,
             yielded: 0,
@@ -201,7 +241,8 @@ impl<const N: usize> FasterOf<N> {
         }
         (self.lane, self.bound, self.lead) = (None, None, 0.0);
         self.lost = false;
-        (self.walked, self.walked_time) = (0, 0.0);
+        self.walked = 0;
+        self.walked_cost = Cost::default();
     }
 
     /// Leaves behind what the other motion does on the moves before those of a piece.
@@ -209,7 +250,7 @@ impl<const N: usize> FasterOf<N> {
         while let Some(other) = self.theirs.front()
             && other.serves().last < piece.serves().first
         {
-            self.lead += other.duration();
+            self.lead += other.duration() * (1.0 + self.tolerated());
             self.theirs.pop_front();
         }
         self.lead -= piece.duration();
@@ -221,15 +262,16 @@ impl<const N: usize> FasterOf<N> {
             return;
         }
         if let Some(bound) = self.boundary() {
-            let theirs: f64 = self.theirs.range(..bound.pieces).map(Piece::duration).sum();
+            let mine = self.walked_cost;
+            let theirs = Cost::of(self.theirs.range(..bound.pieces));
             let moved = bound.pieces > 0;
             let lane = self.lane.unwrap_or_else(|| {
                 self.stretches += u64::from(moved);
-                if !self.lost && (self.walked_time < theirs - TIME_SLACK || !moved) {
+                if !self.lost && (mine.beats(&theirs, self.indifference) || !moved) {
                     return Source::Optimal;
                 }
                 // A line alone is the same for both.
-                self.yielded += u64::from(theirs < self.walked_time - TIME_SLACK);
+                self.yielded += u64::from(theirs.time < mine.time - TIME_SLACK);
                 Source::Smoothed
             });
             match lane {
@@ -240,7 +282,10 @@ impl<const N: usize> FasterOf<N> {
         } else if self.lane.is_none()
             && (self.mine.len() >= MAX_HELD || self.theirs.len() >= MAX_HELD)
         {
-            let ahead = !self.lost && self.ahead() > self.reserve;
+            let [mine, theirs] = self.costs_so_far();
+            self.smoother = mine.energy < theirs.energy;
+            let allowed = theirs.time * (1.0 + self.tolerated());
+            let ahead = !self.lost && allowed - mine.time > self.reserve;
             self.stretches += 1;
             self.yielded += u64::from(!ahead);
             self.lane = Some(if ahead {
@@ -257,7 +302,7 @@ impl<const N: usize> FasterOf<N> {
         while let Some(event) = self.mine.get(self.walked) {
             let events = self.walked + 1;
             match *event {
-                Event::Piece(piece) => self.walked_time += piece.duration(),
+                Event::Piece(piece) => self.walked_cost.add(&piece),
                 Event::Lost => {
                     self.broken |= self.lane == Some(Source::Optimal);
                     self.lost = true;
@@ -326,8 +371,8 @@ impl<const N: usize> FasterOf<N> {
         })
     }
 
-    /// By how much the time-optimal motion is ahead at the last move that both have finished, s.
-    fn ahead(&self) -> f64 {
+    /// What either motion costs up to the last move that both have finished.
+    fn costs_so_far(&self) -> [Cost; 2] {
         let mine = || {
             self.mine.iter().filter_map(|event| match event {
                 Event::Piece(piece) => Some(piece),
@@ -335,16 +380,23 @@ impl<const N: usize> FasterOf<N> {
             })
         };
         let (Some(my_last), Some(their_last)) = (mine().next_back(), self.theirs.back()) else {
-            return f64::NEG_INFINITY;
+            return [Cost::default(); 2];
         };
         let common = my_last.serves().first.min(their_last.serves().first);
-        let time = |pieces: &mut dyn Iterator<Item = &Piece<N>>| -> f64 {
-            pieces
-                .take_while(|piece| piece.serves().last < common)
-                .map(Piece::duration)
-                .sum()
-        };
-        time(&mut self.theirs.iter()) - time(&mut mine())
+        let done = |piece: &&Piece<N>| piece.serves().last < common;
+        [
+            Cost::of(mine().take_while(done)),
+            Cost::of(self.theirs.iter().take_while(done)),
+        ]
+    }
+
+    /// By which share a stretch that is led may take longer than the other motion.
+    fn tolerated(&self) -> f64 {
+        if self.smoother {
+            self.indifference
+        } else {
+            0.0
+        }
     }
 
     /// Stretches between which the other motion has one piece for moves of both, as for pauses that

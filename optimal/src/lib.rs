@@ -14,9 +14,10 @@ mod stream;
 mod window;
 
 pub use planner::{TimeOptimal, plan, plan_with};
-pub use settings::{Effort, Settings};
+pub use settings::{Effort, ModeTooSlow, Settings, Smoothing};
 pub use solver::budget::Budget;
 pub use solver::sequential::ScpSolver;
 pub use window::{
-    EndState, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSegment, WindowSolver,
+    EndState, Follow, Silence, Solved, Unsolved, Wall, Window, WindowDefect, WindowMotion,
+    WindowSegment, WindowSolver,
 };

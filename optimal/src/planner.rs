@@ -10,9 +10,10 @@ use crate::solver::sequential::ScpSolver;
 use crate::stream::Stream;
 use crate::window::WindowSolver;
 use crate::window::horizon::{MAX_SPANS, ROOM};
+use crate::window::output::Event;
 use toolglide_kinematics::{
-    Limits, MotionPlanner, Move, PathCursor, PathLimits, Piece, Plan, PlanError, Toolpath, Vector,
-    WindowTally,
+    Limits, MotionPlanner, Move, PathCursor, PathLimits, PathSide, Piece, Plan, PlanError,
+    Toolpath, Vector, WindowTally,
 };
 use toolglide_smoothing::KinematicSmoothing;
 
@@ -26,14 +27,16 @@ pub struct TimeOptimal<const N: usize, S = ScpSolver<N>> {
     optimal: Stream<S, N>,
     smoothing: KinematicSmoothing<N>,
     race: FasterOf<N>,
+    /// Whether modes of vibration must rest, or a side is kept: then smoothed corners are no alternative.
+    alone: bool,
+    lost: bool,
 }
 
 impl<const N: usize> TimeOptimal<N> {
     /// A planner whose motion begins at rest at `start`.
     #[must_use]
     pub fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
-        let solver = ScpSolver::with_room(MAX_SPANS, ROOM);
-        Self::with_solver(solver, start, settings)
+        Self::with_solver(solver(settings), start, settings)
     }
 }
 
@@ -42,15 +45,27 @@ impl<const N: usize, S: WindowSolver<N>> TimeOptimal<N, S> {
     #[must_use]
     pub fn with_solver(solver: S, start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
+            alone: !settings.modes.is_empty() || settings.side != PathSide::Both,
+            lost: false,
             intake: PathCursor::new(start),
             optimal: Stream::new(solver, start, settings),
             smoothing: KinematicSmoothing::new(
                 start,
                 &toolglide_smoothing::Settings::new(settings.limits),
             ),
-            race: FasterOf::new(STOP_COST * time_to_stop(&settings.limits)),
+            race: FasterOf::new(
+                STOP_COST * time_to_stop(&settings.limits),
+                settings.smoothing.indifference(),
+            ),
         }
     }
+}
+
+/// The solver of the windows of a plan.
+fn solver<const N: usize>(settings: &Settings<N>) -> ScpSolver<N> {
+    ScpSolver::with_room(MAX_SPANS, ROOM)
+        .with_smoothing(settings.smoothing)
+        .with_room_for_modes(settings.modes.len(), MAX_SPANS, ROOM)
 }
 
 /// Time to stop from the largest velocity of any axis with the weakest acceleration and jerk, s.
@@ -68,8 +83,12 @@ fn time_to_stop<const N: usize>(limits: &Limits<N>) -> f64 {
 impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> {
     fn push(&mut self, next: &Move<N>) -> Result<(), PlanError> {
         let index = self.intake.take(next)?;
-        if self.race.is_broken() {
+        if self.lost || self.race.is_broken() {
             return Err(PlanError::Magnitude { index });
+        }
+        if self.alone {
+            self.optimal.push(next);
+            return Ok(());
         }
         let leads = self.race.leads();
         self.optimal.lead(leads);
@@ -88,9 +107,13 @@ impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> 
 
     fn finish(&mut self) -> Result<(), PlanError> {
         if self.intake.close() {
-            if self.race.is_broken() {
+            if self.lost || self.race.is_broken() {
                 let index = self.intake.count();
                 return Err(PlanError::Magnitude { index });
+            }
+            if self.alone {
+                self.optimal.finish();
+                return Ok(());
             }
             self.smoothing.finish()?;
             self.optimal.finish();
@@ -101,6 +124,13 @@ impl<const N: usize, S: WindowSolver<N>> MotionPlanner<N> for TimeOptimal<N, S> 
     }
 
     fn pull(&mut self) -> Option<Piece<N>> {
+        while self.alone {
+            match self.optimal.pull()? {
+                Event::Piece(piece) => return Some(piece),
+                Event::Lost => self.lost = true,
+                Event::Rest(_) | Event::Joint(_) => {}
+            }
+        }
         loop {
             self.race
                 .gather(|| self.optimal.pull(), || self.smoothing.pull());
@@ -144,8 +174,7 @@ pub fn plan<const N: usize>(
     path: &Toolpath<N>,
     settings: &Settings<N>,
 ) -> Result<Plan<N>, PlanError> {
-    let solver = ScpSolver::with_room(MAX_SPANS, ROOM);
-    plan_with(solver, path, settings)
+    plan_with(solver(settings), path, settings)
 }
 
 /// Plans a whole toolpath with a solver for its windows.

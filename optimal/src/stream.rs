@@ -8,9 +8,9 @@ use crate::path::chords::Chords;
 use crate::path::merge::{Segment, SegmentMerger, Vertex};
 use crate::path::spans::{Fineness, Part, cut};
 use crate::settings::Settings;
-use crate::window::WindowSolver;
 use crate::window::horizon::Horizon;
 use crate::window::output::Event;
+use crate::window::{Follow, WindowSolver};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, Move, MoveRange, Path, Pause, Vector, WindowTally};
 
@@ -29,6 +29,8 @@ const WORK_A_MOVE: u64 = 80_000;
 pub(crate) struct Stream<S, const N: usize> {
     limits: Limits<N>,
     fineness: Fineness,
+    /// Time that modes of vibration take to come to rest, s.
+    silence: f64,
     joiner: SegmentMerger<N>,
     horizon: Horizon<S, N>,
     position: Vector<N>,
@@ -48,6 +50,7 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         Self {
             limits: settings.limits,
             fineness: settings.effort.fineness(),
+            silence: settings.modes.settling_time(),
             joiner: SegmentMerger::new(start),
             horizon: Horizon::new(solver, start, settings),
             position: start,
@@ -74,9 +77,15 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         self.index += 1;
         self.position = next.end(self.position);
         match next.path() {
-            Path::Line { end } => self.take_point(next, index, *end, 0.0),
+            Path::Line { end } => self.take_point(next, index, *end, (0.0, None)),
             Path::Arc(arc) => {
-                let chords = Chords::new(*arc, next.tolerance().length());
+                let chords = Chords::following(
+                    *arc,
+                    next.tolerance().length(),
+                    next.feedrate().speed(),
+                    &self.limits,
+                    self.fineness,
+                );
                 self.arc = Some((chords, *next, index));
                 return;
             }
@@ -151,7 +160,8 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         };
         let (step, index, bulge) = (*step, *index, chords.bulge());
         if let Some(point) = chords.next() {
-            self.take_point(&step, index, point, bulge);
+            let follow = chords.follow();
+            self.take_point(&step, index, point, (bulge, follow));
         } else {
             self.arc = None;
             if step.stops() {
@@ -161,12 +171,19 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         true
     }
 
-    fn take_point(&mut self, step: &Move<N>, index: u32, point: Vector<N>, bulge: f64) {
+    fn take_point(
+        &mut self,
+        step: &Move<N>,
+        index: u32,
+        point: Vector<N>,
+        (bulge, follow): (f64, Option<Follow<N>>),
+    ) {
         let vertex = Vertex {
             point,
             bulge,
             feedrate: step.feedrate().speed(),
             tolerance: step.tolerance().length(),
+            follow,
             index,
         };
         if let Some(run) = self.joiner.push(vertex) {
@@ -175,10 +192,16 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
     }
 
     fn take_run(&mut self, run: &Segment<N>) {
-        cut(run, &self.limits, self.fineness, |part| match part {
-            Part::Span(span) => self.horizon.push(span),
-            Part::Cruise(cruise) => self.horizon.cruise(&cruise),
-        });
+        cut(
+            run,
+            &self.limits,
+            self.fineness,
+            self.silence,
+            |part| match part {
+                Part::Span(span) => self.horizon.push(span),
+                Part::Cruise(cruise) => self.horizon.cruise(&cruise),
+            },
+        );
         self.horizon.plan();
         self.collect();
     }

@@ -1,4 +1,4 @@
-//! Random programs through windows, judged, and never slower than smoothed corners.
+//! Random programs through windows, judged, and slower than smoothed corners by the share of smoothing at most.
 
 #![allow(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ use proptest::test_runner::{RngSeed, TestRunner};
 use toolglide_kinematics::{
     Arc, AxisLimits, Feedrate, Limits, Move, Tolerance, Toolpath, Trajectory, Vector, WindowTally,
 };
-use toolglide_optimal::{ScpSolver, WindowSolver};
+use toolglide_optimal::{ScpSolver, Smoothing, WindowSolver};
 use toolglide_verify::verify;
 
 /// A stroke: a direction, a length, and what is special about it.
@@ -90,7 +90,7 @@ fn limits_of<const N: usize>(axes: &[[f64; 3]]) -> Limits<N> {
     }))
 }
 
-/// A random program is planned without a violation, never slower than smoothed corners.
+/// A random program is planned without a violation, slower than smoothed corners by the share of smoothing at most.
 fn holds<S: WindowSolver<N>, const N: usize>(
     solver: S,
     strokes: &[Stroke],
@@ -104,7 +104,7 @@ fn holds<S: WindowSolver<N>, const N: usize>(
     let settings = toolglide_smoothing::Settings::new(limits);
     let smoothed = toolglide_smoothing::plan(&path, &settings).unwrap();
     prop_assert!(
-        plan.duration() <= smoothed.duration() + 1e-6,
+        plan.duration() <= smoothed.duration() * (1.0 + Smoothing::DEFAULT.indifference()) + 1e-6,
         "{} s instead of {} s",
         plan.duration(),
         smoothed.duration()
@@ -127,7 +127,8 @@ fn try_programs<const N: usize>(cases: u32) {
     let tried = runner.run(
         &(strokes(N), axis_limits(N), 0.005..0.1_f64),
         |(strokes, axes, tolerance)| {
-            let found = holds::<_, N>(ScpSolver::new(), &strokes, &axes, tolerance)?;
+            let solver = ScpSolver::new().with_smoothing(Smoothing::DEFAULT);
+            let found = holds::<_, N>(solver, &strokes, &axes, tolerance)?;
             let mut sum = tally.get();
             sum.windows += found.windows;
             sum.kept += found.kept;
@@ -149,12 +150,12 @@ fn try_programs<const N: usize>(cases: u32) {
 }
 
 #[test]
-fn random_programs_on_two_axes_pass_the_judge_and_are_never_slower_than_smoothed() {
+fn random_programs_on_two_axes_pass_the_judge_and_are_hardly_slower_than_smoothed() {
     try_programs::<2>(250);
 }
 
 #[test]
-fn random_programs_on_three_axes_pass_the_judge_and_are_never_slower_than_smoothed() {
+fn random_programs_on_three_axes_pass_the_judge_and_are_hardly_slower_than_smoothed() {
     try_programs::<3>(250);
 }
 

@@ -55,6 +55,8 @@ impl Program {
                 steps: (1..200)
                     .find(|steps| f64::from(*steps) * self.interval >= *duration)
                     .map_or(200, |steps: u16| usize::from(steps.max(4))),
+                follow: None,
+                walls: [None; 2],
             })
             .collect();
         then(&Window {
@@ -62,6 +64,7 @@ impl Program {
             end: EndState::rest(segments[segments.len() - 1].end),
             segments: &segments,
             limits: &limits,
+            silence: None,
         })
     }
 }

@@ -8,6 +8,7 @@
 //! the ball is wide need not be crossed, so that such a ball gets half of the radius: then even its
 //! far side is near enough. Not here: motion.
 
+use crate::window::Follow;
 use toolglide_kinematics::numeric::{MIN_SHARE, SHORTEST_LENGTH};
 use toolglide_kinematics::{MoveRange, Pause, Vector};
 
@@ -26,6 +27,8 @@ pub(crate) struct Vertex<const N: usize> {
     pub(crate) bulge: f64,
     pub(crate) feedrate: f64,
     pub(crate) tolerance: f64,
+    /// The arc over that stretch, where the motion shall follow it.
+    pub(crate) follow: Option<Follow<N>>,
     pub(crate) index: u32,
 }
 
@@ -41,6 +44,9 @@ pub(crate) struct Segment<const N: usize> {
     pub(crate) tube: f64,
     /// Largest radius of the balls at its start and at its end, mm.
     pub(crate) balls: [f64; 2],
+    pub(crate) follow: Option<Follow<N>>,
+    /// Whether it has chords of arcs.
+    pub(crate) curved: bool,
     pub(crate) serves: MoveRange,
 }
 
@@ -127,6 +133,7 @@ impl<const N: usize> SegmentMerger<N> {
             near_start |= (member.point - self.anchor).norm() <= tube + deviation;
             near_end |= (member.point - last.point).norm() <= tube + deviation;
         }
+        let curved = self.members.iter().any(|member| member.bulge > 0.0);
         self.members.clear();
         self.deviation = 0.0;
         if length <= SHORTEST_LENGTH {
@@ -142,6 +149,8 @@ impl<const N: usize> SegmentMerger<N> {
             feedrate: last.feedrate,
             tube,
             balls: [ball(near_start), ball(near_end)],
+            curved,
+            follow: if skipped == 0 { last.follow } else { None },
             serves,
         };
         self.anchor = last.point;
@@ -183,7 +192,8 @@ impl<const N: usize> SegmentMerger<N> {
     fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
         let last = self.members.last()?;
         let same_feedrate = last.feedrate.to_bits() == vertex.feedrate.to_bits();
-        if self.members.len() >= MAX_JOINED || !same_feedrate {
+        let follows = last.follow.is_some() || vertex.follow.is_some();
+        if self.members.len() >= MAX_JOINED || !same_feedrate || follows {
             return None;
         }
         let (mut tolerance, mut bulge) = (vertex.tolerance, vertex.bulge);
@@ -227,6 +237,7 @@ mod tests {
             bulge: 0.0,
             feedrate: 100.0,
             tolerance: 0.01,
+            follow: None,
             index,
         }
     }

@@ -6,10 +6,11 @@
 //! windows.
 
 use crate::path::merge::Segment;
+use crate::window::Follow;
 use toolglide_kinematics::{Limits, MoveRange, PathLimits, Vector};
 
 /// Longest time of a span that changes its speed, as a multiple of the interval.
-const SPAN_STEPS: f64 = 24.0;
+pub(crate) const SPAN_STEPS: f64 = 24.0;
 
 /// Fewest intervals of a span: with four it can be started and stopped at both ends.
 pub(crate) const MIN_STEPS: usize = 4;
@@ -42,6 +43,10 @@ pub(crate) struct Span<const N: usize> {
     pub(crate) tube: f64,
     /// Largest radius of the balls at its start and at its end, mm.
     pub(crate) balls: [f64; 2],
+    /// Whether it is a chord of an arc.
+    pub(crate) curved: bool,
+    /// The arc over it, where the motion shall follow it.
+    pub(crate) follow: Option<Follow<N>>,
     /// Whether the next span goes on along the same line.
     pub(crate) goes_on: bool,
     pub(crate) feedrate: f64,
@@ -86,14 +91,19 @@ pub(crate) fn weakest<const N: usize>(limits: &Limits<N>) -> (f64, f64) {
     (limits.acceleration().min(), limits.jerk().min())
 }
 
-/// Cuts a run into spans and the middle of a long move.
+/// Cuts a run into spans and the middle of a long move, which is reached in `silence` seconds more than speed takes.
 pub(crate) fn cut<const N: usize>(
     run: &Segment<N>,
     limits: &Limits<N>,
     fineness: Fineness,
+    silence: f64,
     mut take: impl FnMut(Part<N>),
 ) {
     let line = whole(run, limits, fineness);
+    if run.follow.is_some() {
+        take(line.part(run, 0.0, f64::INFINITY));
+        return;
+    }
     let Span {
         limits: along,
         interval,
@@ -101,8 +111,10 @@ pub(crate) fn cut<const N: usize>(
         ..
     } = line;
     let distance_to_stop = 0.5 * along.velocity * stop_time;
-    let room = (0.5 * (run.length - MIDDLE * distance_to_stop)).min(END_ROOM[1] * distance_to_stop);
-    if room.is_nan() || room < END_ROOM[0] * distance_to_stop {
+    let more = along.velocity * silence;
+    let room =
+        (0.5 * (run.length - MIDDLE * distance_to_stop)).min(END_ROOM[1] * distance_to_stop + more);
+    if room.is_nan() || room < END_ROOM[0] * distance_to_stop + more {
         let reach = along.reachable_within(run.length);
         let time = 2.0 * along.time_to_change(reach) + run.length / along.velocity;
         let least = along.velocity * interval * SPAN_STEPS;
@@ -141,17 +153,30 @@ pub(crate) fn cut<const N: usize>(
     }
 }
 
+/// Duration of an interval at a feedrate (mm/s) on the way from or to rest, s.
+pub(crate) fn interval_at<const N: usize>(
+    limits: &Limits<N>,
+    feedrate: f64,
+    fineness: Fineness,
+) -> (f64, PathLimits) {
+    let (acceleration, jerk) = weakest(limits);
+    let weak = PathLimits {
+        velocity: feedrate,
+        acceleration,
+        jerk,
+    };
+    let build_up = (acceleration / jerk).min((feedrate / jerk).sqrt());
+    let stop_time = weak.time_to_change(feedrate);
+    // Where speed takes long to change, the intervals grow with the geometric mean of both times.
+    let interval = fineness.0 * (build_up * (0.5 * stop_time).max(build_up)).sqrt();
+    (interval, weak)
+}
+
 /// A run as one span.
 fn whole<const N: usize>(run: &Segment<N>, limits: &Limits<N>, fineness: Fineness) -> Span<N> {
     let mut along = limits.along(&run.direction);
     along.velocity = along.velocity.min(run.feedrate);
-    let (acceleration, jerk) = weakest(limits);
-    let weak = PathLimits {
-        velocity: along.velocity,
-        acceleration,
-        jerk,
-    };
-    let build_up = (acceleration / jerk).min((along.velocity / jerk).sqrt());
+    let (interval, weak) = interval_at(limits, along.velocity, fineness);
     let stop_time = weak.time_to_change(along.velocity);
     Span {
         start: run.start,
@@ -160,12 +185,13 @@ fn whole<const N: usize>(run: &Segment<N>, limits: &Limits<N>, fineness: Finenes
         length: run.length,
         tube: run.tube,
         balls: run.balls,
+        curved: run.curved,
+        follow: run.follow,
         goes_on: false,
         feedrate: run.feedrate,
         limits: along,
         serves: run.serves,
-        // Where speed takes long to change, the intervals grow with the geometric mean of both times.
-        interval: fineness.0 * (build_up * (0.5 * stop_time).max(build_up)).sqrt(),
+        interval,
         stop_time,
         steps: 0,
     }

@@ -10,6 +10,7 @@
 
 pub(crate) mod b_spline;
 pub(crate) mod constraints;
+pub(crate) mod modes;
 mod track;
 
 use self::track::Track;
@@ -17,6 +18,7 @@ use crate::solver::riccati::{Chain, Interval};
 use crate::window::{EndState, Window, WindowDefect};
 use b_spline::{Basis, State};
 use constraints::{Bounds, InBox, InDisc, InTube, Rows};
+use modes::Conditions;
 use toolglide_kinematics::Vector;
 
 /// All rows of one node and of the interval after it.
@@ -56,6 +58,9 @@ pub(crate) struct Problem<const N: usize> {
     base: Vec<State<N>>,
     base_jerks: Vec<Vector<N>>,
     stretching: bool,
+    conditions: Conditions,
+    /// Heights of arcs over their chords at the Bezier points of each node, in sagittas.
+    heights: Vec<[f64; 2]>,
 }
 
 impl<const N: usize> Default for Problem<N> {
@@ -76,6 +81,8 @@ impl<const N: usize> Default for Problem<N> {
             base: Vec::new(),
             base_jerks: Vec::new(),
             stretching: false,
+            conditions: Conditions::default(),
+            heights: Vec::new(),
         }
     }
 }
@@ -88,6 +95,17 @@ impl<const N: usize> Problem<N> {
         self.bases.reserve(steps + 1);
         self.base.reserve(steps + 1);
         self.base_jerks.reserve(steps);
+        self.heights.reserve(steps + 1);
+    }
+
+    /// Makes room for the conditions of so many modes.
+    pub(crate) fn reserve_modes(&mut self, modes: usize, segments: usize, steps: usize) {
+        self.conditions.reserve(modes, segments, steps);
+    }
+
+    /// What the end must be beside where it is.
+    pub(crate) fn conditions(&self) -> &Conditions {
+        &self.conditions
     }
 
     /// Takes a window.
@@ -107,6 +125,8 @@ impl<const N: usize> Problem<N> {
                 .extend(std::iter::repeat_n(index, segment.steps));
         }
         self.segment_of.push(window.segments.len() - 1);
+        self.heights.clear();
+        self.heights.resize(self.segment_of.len(), [0.0; 2]);
         self.start = self.relative(&window.start);
         self.end = self.relative(&window.end);
         self.start_room = [1.0; 2];
@@ -146,6 +166,28 @@ impl<const N: usize> Problem<N> {
             let near = |offset: usize| self.duration((node + offset).clamp(2, steps + 1) - 2);
             self.bases
                 .push(Basis::new([near(0), near(1), near(2), near(3)], near(4)));
+        }
+    }
+
+    /// Bends the tubes of arcs that are followed to where the motion is.
+    pub(crate) fn set_places(&mut self, states: &[State<N>]) {
+        for (node, (heights, state)) in self.heights.iter_mut().zip(states).enumerate() {
+            let height = |interval: usize, sign: f64| {
+                let track = &self.tracks[self.segment_of[interval]];
+                track.height(state, sign * track.duration / 3.0)
+            };
+            *heights = [height(node, 1.0), height(node.saturating_sub(1), -1.0)];
+        }
+    }
+
+    /// Counts intervals by their duration in means over time, and pulls positions to the middle of their
+    /// tubes with this weight; without, all intervals count alike and nothing is pulled.
+    pub(crate) fn set_centring(&mut self, weight: Option<f64>) {
+        let whole: f64 = self.tracks.iter().map(Track::whole).sum();
+        let mean = whole / count(self.steps());
+        for track in &mut self.tracks {
+            track.time_weight = weight.map_or(1.0, |_| track.duration / mean);
+            track.tube.centring = weight.map_or(0.0, |weight| weight * track.time_weight);
         }
     }
 
@@ -215,6 +257,7 @@ impl<const N: usize> Problem<N> {
             let boxes = if track.slow_axis { 3 } else { 2 };
             degree += track.steps * (boxes * 2 * N + 1 + 6);
             degree += usize::from(track.corner.is_some());
+            degree += track.walls.iter().flatten().count() * track.steps;
         }
         // The ends have no bound of acceleration but one.
         count(degree - 2 * N)
@@ -223,6 +266,12 @@ impl<const N: usize> Problem<N> {
     #[inline(always)]
     pub(crate) fn duration(&self, interval: usize) -> f64 {
         self.tracks[self.segment_of[interval]].duration
+    }
+
+    /// What an interval counts in means over time.
+    #[inline(always)]
+    pub(crate) fn time_weight(&self, interval: usize) -> f64 {
+        self.tracks[self.segment_of[interval]].time_weight
     }
 
     #[inline(always)]
@@ -313,6 +362,10 @@ impl<const N: usize> Problem<N> {
         if node == 0 {
             [feed.room, tube.room] = self.start_room;
         }
+        tube.start += track.sagitta * self.heights[node][0];
+        if node > 0 {
+            tube.wall = track.wall(node - track.first);
+        }
         visit.rows(&mut rows.feed, &feed, &velocity);
         if track.slow_axis {
             visit.rows(&mut rows.velocity, &self.by_velocity, &velocity);
@@ -338,9 +391,11 @@ impl<const N: usize> Problem<N> {
         let basis = &self.bases[node];
         let mut tube = track.tube;
         tube.capsule = track.is_round(node - 1 - track.first);
+        tube.start += track.sagitta * self.heights[node][1];
         if node == self.steps() {
             tube.room = self.end_room;
         } else {
+            tube.wall = track.wall(node - 1 - track.first);
             let still = Chain {
                 order: 2,
                 ahead: 0.0,

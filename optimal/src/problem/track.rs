@@ -3,9 +3,13 @@
 //! Source: as [`problem`](super). Not here: which point of the motion keeps it.
 
 use super::{Problem, count};
+use crate::problem::b_spline::State;
 use crate::problem::constraints::{Disc, Tube};
 use crate::window::{WindowDefect, WindowSegment};
 use toolglide_kinematics::{Vector, vector::length_and_direction};
+
+/// Distance beyond a side that is kept which counts as one of excess, mm.
+const WALL: f64 = 0.005;
 
 /// So many intervals at each end of a segment have a tube with round ends.
 const ROUND_INTERVALS: usize = 2;
@@ -14,6 +18,10 @@ const ROUND_INTERVALS: usize = 2;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track<const N: usize> {
     pub(super) tube: Tube<N>,
+    /// From the chord to the arc that is followed, at the middle, mm; zero elsewhere.
+    pub(super) sagitta: Vector<N>,
+    /// The side that is kept over either half.
+    pub(super) walls: [Option<(Vector<N>, f64)>; 2],
     pub(super) corner: Option<Disc<N>>,
     pub(super) feed: Disc<N>,
     /// The same in its first and in its last interval.
@@ -23,6 +31,8 @@ pub(super) struct Track<const N: usize> {
     pub(super) first: usize,
     pub(super) steps: usize,
     pub(super) duration: f64,
+    /// Weight of an interval in means over time, over that of a mean interval; 1 where all count alike.
+    pub(super) time_weight: f64,
 }
 
 impl<const N: usize> Problem<N> {
@@ -55,10 +65,21 @@ impl<const N: usize> Problem<N> {
                 start: segment.start - self.origin,
                 direction,
                 length,
-                by_radius: 1.0 / segment.tolerance,
+                by_radius: 1.0
+                    / segment
+                        .follow
+                        .map_or(segment.tolerance, |follow| follow.radius),
                 room: 1.0,
                 capsule: true,
+                centring: 0.0,
+                wall: None,
             },
+            sagitta: segment
+                .follow
+                .map_or(Vector::zeros(), |follow| follow.sagitta),
+            walls: segment
+                .walls
+                .map(|wall| wall.map(|wall| (wall.outward / WALL, wall.allowed / WALL))),
             corner: corner.filter(|_| next.is_some()).map(|tolerance| Disc {
                 center: segment.end - self.origin,
                 by_radius: 1.0 / tolerance,
@@ -73,6 +94,7 @@ impl<const N: usize> Problem<N> {
             first: self.segment_of.len(),
             steps: segment.steps,
             duration: 0.0,
+            time_weight: 1.0,
         })
     }
 }
@@ -98,6 +120,21 @@ impl<const N: usize> Track<N> {
 
     pub(super) fn whole(&self) -> f64 {
         self.duration * count(self.steps)
+    }
+
+    /// The side that is kept in an interval.
+    #[inline(always)]
+    pub(super) fn wall(&self, interval: usize) -> Option<(Vector<N>, f64)> {
+        self.walls[usize::from(2 * interval >= self.steps)]
+    }
+
+    /// How far the arc over a chord is from it where the Bezier point `ahead` (s) of a node's velocity lies, in
+    /// sagittas: the curve touches the line to that point at the node, and bends away from it.
+    pub(super) fn height(&self, state: &State<N>, ahead: f64) -> f64 {
+        let along = |of: &Vector<N>| self.tube.direction.dot(of) / self.tube.length;
+        let further = along(&state[1]) * ahead;
+        let share = (along(&(state[0] - self.tube.start)) + further).clamp(0.0, 1.0);
+        4.0 * share * (1.0 - share) + 4.0 * further * further
     }
 
     /// Share of the tolerance that a point uses.

@@ -16,6 +16,20 @@ const EARNED: [f64; 2] = [4e5, 2e5];
 /// Steps of the interior-point method without which no window is begun: those of a usual one.
 const USUAL_STEPS: u64 = 100;
 
+/// Percent more that a smoothed window costs, and one of motion that leaves a mode of vibration at rest.
+const SMOOTHING: u64 = 25;
+const MODE: u64 = 25;
+
+/// How much larger than the usual one a window is.
+#[allow(clippy::cast_precision_loss, reason = "some millions at the most")]
+fn scale(window: u64) -> f64 {
+    window as f64 / WINDOW as f64
+}
+
+fn count(modes: usize) -> u64 {
+    u64::try_from(modes).unwrap_or(0)
+}
+
 /// What finding a motion may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
@@ -61,15 +75,23 @@ pub(crate) struct Credit {
     left: u64,
     spent: u64,
     earned: f64,
+    window: u64,
+    store: u64,
 }
 
 impl Credit {
-    /// The whole store, for motion of so many axes.
-    pub(crate) fn new(axes: usize) -> Self {
+    /// The whole store, for motion of so many axes; `smooth` motion needs one problem more a window, and modes of
+    /// vibration make every one costlier.
+    pub(crate) fn new(axes: usize, smooth: bool, modes: usize) -> Self {
+        let share = if smooth { 100 + SMOOTHING } else { 100 };
+        let scaled = |work: u64| work * share / 100 + work * MODE * count(modes) / 100;
+        let (store, window) = (scaled(STORE), scaled(WINDOW));
         Self {
-            left: STORE,
+            left: store,
             spent: 0,
-            earned: EARNED[usize::from(axes > 2)],
+            earned: EARNED[usize::from(axes > 2)] * scale(window),
+            window,
+            store,
         }
     }
 
@@ -81,18 +103,18 @@ impl Credit {
     )]
     pub(crate) fn earn(&mut self, duration: f64) {
         let earned = (self.earned * duration).max(0.0) as u64;
-        self.left = self.left.saturating_add(earned).min(STORE);
+        self.left = self.left.saturating_add(earned).min(self.store);
     }
 
     /// What the next window may cost; `None` where that is too little for its `intervals`, unless it
     /// `must` be planned.
     pub(crate) fn window(&self, intervals: usize, must: bool) -> Option<u64> {
         if must {
-            return Some(WINDOW);
+            return Some(self.window);
         }
         let intervals = u64::try_from(intervals).unwrap_or(u64::MAX);
-        let usual = USUAL_STEPS.saturating_mul(intervals).min(WINDOW);
-        (self.left >= usual).then_some(usual.max(self.left / 2).min(WINDOW))
+        let usual = USUAL_STEPS.saturating_mul(intervals).min(self.window);
+        (self.left >= usual).then_some(usual.max(self.left / 2).min(self.window))
     }
 
     /// Takes away what a window has cost.
@@ -103,7 +125,7 @@ impl Credit {
 
     /// Whether there is hardly anything left.
     pub(crate) fn is_short(&self) -> bool {
-        self.left < WINDOW / 4
+        self.left < self.window / 4
     }
 
     /// Work of all windows so far.
@@ -118,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_window_is_begun_while_there_is_enough_for_it() {
-        let mut credit = Credit::new(3);
+        let mut credit = Credit::new(3, false, 0);
         assert_eq!(credit.window(500, false), Some(WINDOW));
         credit.pay(STORE - 10_000);
         assert_eq!(credit.window(101, false), None, "99 steps");

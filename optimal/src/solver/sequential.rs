@@ -11,10 +11,13 @@
 
 use crate::problem::b_spline::State;
 use crate::problem::{Problem, count};
+use crate::settings::Smoothing;
 use crate::solver::budget::Budget;
 use crate::solver::interior::{Ending, Goal, Interior, Precision};
-use crate::window::{EndState, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSolver};
-use toolglide_kinematics::{Vector, vector::is_finite};
+use crate::window::{
+    EndState, Silence, Solved, Unsolved, Window, WindowDefect, WindowMotion, WindowSolver,
+};
+use toolglide_kinematics::{AxisMode, ModeState, Vector, vector::is_finite};
 
 /// Weight of the excess against the duration: ten leaves local minima with an excess, from fifty on
 /// it makes no difference.
@@ -70,6 +73,17 @@ const RESTORED: Precision = Precision {
     smoothing: SMOOTHING,
 };
 
+/// What a smoothing must come to. With the weight of the excess some thousand times that of the jerk no excess
+/// is traded for jerk.
+const SMOOTHED: Precision = Precision {
+    gap: 1e-5,
+    miss: 1e-8,
+    smoothing: 1e-2,
+};
+
+/// Weight of the mean square of the distance from the path in tolerances, against that of jerk in limits.
+const CENTRING: f64 = 0.15;
+
 /// Weight of the mean square of jerk against the duration: costs two parts in a hundred thousand of
 /// time, makes the motion smoother and the problems easier.
 const SMOOTHING: f64 = 1e-3;
@@ -81,6 +95,9 @@ const USABLE: f64 = 1e-2;
 /// it costs as much as.
 const EXPECTED: u64 = 20;
 const PREPARING: u32 = 2;
+
+/// So many modes cost as much as all else in a window.
+const MODES_AS_MUCH: usize = 4;
 
 /// A restoration that stalled may still be used below this miss.
 const USABLE_MISS: f64 = 1e-6;
@@ -107,6 +124,8 @@ const USABLE_MISS: f64 = 1e-6;
 ///     corner_tolerance: Some(0.01),
 ///     feedrate: 100.0,
 ///     steps: 40,
+///     follow: None,
+///     walls: [None; 2],
 /// };
 /// let segments = [
 ///     segment(Vector::<2>::new(0.0, 0.0), corner),
@@ -117,6 +136,7 @@ const USABLE_MISS: f64 = 1e-6;
 ///     end: EndState::rest(segments[1].end),
 ///     segments: &segments,
 ///     limits: &limits,
+///     silence: None,
 /// };
 /// let mut motion = WindowMotion {
 ///     durations: vec![0.16, 0.16],
@@ -138,6 +158,11 @@ pub struct ScpSolver<const N: usize> {
     best_durations: Vec<f64>,
     best_duration: Option<f64>,
     budget: Budget,
+    /// Share by which the smoothest motion may be slower than the fastest; 0 leaves the fastest.
+    slower: f64,
+    /// Modes of the window at hand, and their states at its start.
+    modes: Vec<AxisMode>,
+    swings: Vec<ModeState>,
     solves: u32,
     iterations: u32,
 }
@@ -179,12 +204,41 @@ impl<const N: usize> ScpSolver<N> {
         solver
     }
 
+    /// The same, looking for the smoothest motion that is slower than the fastest by a share of its duration.
+    #[must_use]
+    pub fn with_smoothing(mut self, smoothing: Smoothing) -> Self {
+        self.slower = smoothing.share();
+        self
+    }
+
+    /// The same with room for so many modes in windows of so many segments and intervals.
+    #[must_use]
+    pub fn with_room_for_modes(mut self, modes: usize, segments: usize, steps: usize) -> Self {
+        self.problem.reserve_modes(modes, segments, steps);
+        self.interior.reserve_conditions(4 * modes, segments, steps);
+        self.modes.reserve(modes);
+        self.swings.reserve(modes);
+        self
+    }
+
+    /// Intervals of the window, and what its modes cost as more of them.
+    fn work_intervals(&self) -> usize {
+        let steps = self.problem.steps();
+        steps + steps * self.modes.len() / MODES_AS_MUCH
+    }
+
     fn load(
         &mut self,
         window: &Window<'_, N>,
         motion: &WindowMotion<N>,
     ) -> Result<(), WindowDefect> {
         self.problem.load(window)?;
+        self.modes.clear();
+        self.swings.clear();
+        if let Some(silence) = &window.silence {
+            self.modes.extend_from_slice(silence.modes);
+            self.swings.extend_from_slice(silence.start);
+        }
         self.best_duration = None;
         self.solves = 0;
         self.iterations = 0;
@@ -235,9 +289,13 @@ impl<const N: usize> ScpSolver<N> {
     fn run(&mut self, goal: Goal, trust: f64, precision: &Precision) -> bool {
         let steps = self.problem.steps();
         let restoring = matches!(goal, Goal::Restore { .. });
+        let shortening = matches!(goal, Goal::Shorten { .. });
         // What is shortened must be restored.
-        let kept = if restoring { 0 } else { EXPECTED };
-        let left = self.budget.steps(steps).saturating_sub(kept);
+        let kept = if shortening { EXPECTED } else { 0 };
+        let left = self
+            .budget
+            .steps(self.work_intervals())
+            .saturating_sub(kept);
         let most = u32::try_from(left).unwrap_or(u32::MAX);
         let most = most.saturating_sub(PREPARING);
         if most == 0 {
@@ -250,14 +308,24 @@ impl<const N: usize> ScpSolver<N> {
         self.interior.trust.clear();
         self.interior.trust.resize(self.problem.segments(), trust);
         self.problem.set_durations(&self.durations);
+        self.problem.set_places(&self.base.states);
         let base = (self.base.states.as_slice(), self.base.jerks.as_slice());
-        self.problem.set_base((!restoring).then_some(base));
+        self.problem.set_base(shortening.then_some(base));
+        let silence = Silence {
+            modes: &self.modes,
+            start: &self.swings,
+        };
+        self.problem.set_silence(Some(&silence));
+        let smoothing = matches!(goal, Goal::Smooth { .. });
+        let centring = CENTRING * precision.smoothing;
+        self.problem.set_centring(smoothing.then_some(centring));
         let outcome = self
             .interior
             .solve(&mut self.problem, goal, precision, most);
         self.solves += 1;
         self.iterations += outcome.iterations;
-        self.budget.spend(steps, outcome.iterations + PREPARING);
+        self.budget
+            .spend(self.work_intervals(), outcome.iterations + PREPARING);
         let used = match outcome.ending {
             Ending::Solved => true,
             _ if restoring => outcome.miss < USABLE_MISS,
@@ -292,19 +360,41 @@ impl<const N: usize> ScpSolver<N> {
             return None;
         }
         let excess = self.interior.excess;
-        let duration = self.durations.iter().sum();
+        let duration: f64 = self.durations.iter().sum();
         if excess <= ENOUGH && self.best_duration.is_none_or(|best| duration < best) {
-            self.best_duration = Some(duration);
-            self.best.states.clone_from(&self.base.states);
-            self.best.jerks.clone_from(&self.base.jerks);
-            self.best_durations.clone_from(&self.durations);
+            self.keep_best();
         }
         Some(excess)
     }
 
+    /// Finds the motion of least jerk, and nearest to the middle of the tube, in a little more time than the best;
+    /// keeps the best where there is none.
+    fn smooth(&mut self) {
+        self.durations.clone_from(&self.best_durations);
+        for duration in &mut self.durations {
+            *duration *= 1.0 + self.slower;
+        }
+        self.base.states.clone_from(&self.best.states);
+        self.base.jerks.clone_from(&self.best.jerks);
+        let goal = Goal::Smooth {
+            excess: EXCESS_WEIGHT,
+        };
+        if self.run(goal, 1.0, &SMOOTHED) && self.interior.excess <= ENOUGH {
+            self.keep_best();
+        }
+    }
+
+    /// Keeps the motion at hand as the best.
+    fn keep_best(&mut self) {
+        self.best_duration = Some(self.durations.iter().sum());
+        self.best.states.clone_from(&self.base.states);
+        self.best.jerks.clone_from(&self.base.jerks);
+        self.best_durations.clone_from(&self.durations);
+    }
+
     /// Whether there is enough left for so many problems.
     fn affords(&self, problems: u64) -> bool {
-        self.budget.steps(self.problem.steps()) >= EXPECTED * problems
+        self.budget.steps(self.work_intervals()) >= EXPECTED * problems
     }
 
     /// Shortens and restores until nothing is gained; gives the least excess of the restored.
@@ -382,6 +472,9 @@ impl<const N: usize> ScpSolver<N> {
                 *duration *= 1.0 + slower;
             }
             excess = excess.min(self.restore().unwrap_or(f64::INFINITY));
+        }
+        if self.slower > 0.0 && self.best_duration.is_some() {
+            self.smooth();
         }
         let solves = self.solves;
         let Some(duration) = self.best_duration else {

@@ -7,11 +7,13 @@ pub(crate) mod check;
 pub(crate) mod horizon;
 pub(crate) mod initial_guess;
 pub(crate) mod output;
+pub(crate) mod shaped_line;
 pub(crate) mod straight_line;
+pub(crate) mod swings;
 
 use crate::solver::budget::Budget;
 use thiserror::Error;
-use toolglide_kinematics::{Limits, Vector};
+use toolglide_kinematics::{AxisMode, Limits, ModeState, Vector};
 
 /// One straight piece of a window: the tube it may use and how finely its time is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +31,28 @@ pub struct WindowSegment<const N: usize> {
     pub feedrate: f64,
     /// Into how many intervals of equal duration its time is cut; at least [`WindowSegment::MIN_STEPS`].
     pub steps: usize,
+    /// The arc of which this is a chord, where the motion shall follow it; `None` where all of the tube serves.
+    pub follow: Option<Follow<N>>,
+    /// How far the motion may leave the line on one side, over its first and over its second half.
+    pub walls: [Option<Wall<N>>; 2],
+}
+
+/// A side of a line that the motion keeps away from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall<const N: usize> {
+    /// Unit vector across the line, to the side that is kept.
+    pub outward: Vector<N>,
+    /// How far the motion may go there, mm.
+    pub allowed: f64,
+}
+
+/// An arc over a chord that the motion shall follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Follow<const N: usize> {
+    /// From the middle of the chord to the middle of the arc, mm.
+    pub sagitta: Vector<N>,
+    /// How far the motion may be from the arc, mm.
+    pub radius: f64,
 }
 
 impl<const N: usize> WindowSegment<N> {
@@ -72,6 +96,15 @@ impl<const N: usize> EndState<N> {
     }
 }
 
+/// Modes of vibration that must rest where a window ends, and how they swing where it starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Silence<'a> {
+    /// The modes.
+    pub modes: &'a [AxisMode],
+    /// The state of each at the start, scaled by the limit of acceleration of its axis.
+    pub start: &'a [ModeState],
+}
+
 /// What is to be passed: segments end to end, and the states before the first and after the last.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<'a, const N: usize> {
@@ -83,6 +116,8 @@ pub struct Window<'a, const N: usize> {
     pub segments: &'a [WindowSegment<N>],
     /// Limits of each axis.
     pub limits: &'a Limits<N>,
+    /// What must rest at the end beside the motion.
+    pub silence: Option<Silence<'a>>,
 }
 
 impl<const N: usize> Window<'_, N> {

@@ -3,7 +3,8 @@
 //! Source: the seven phases of section 3.3.1. Where no window can be solved, the next straight line is
 //! travelled to a stop; and the middle of a long move is travelled in this way. Not here: when that is.
 
-use crate::path::spans::Span;
+use crate::path::spans::{Cruise, Span};
+use crate::window::shaped_line::Shaper;
 use toolglide_kinematics::{MoveRange, PathLimits, Piece, Sample, Vector};
 use toolglide_profiles::{SCurve, SCurveBoundary};
 
@@ -54,6 +55,58 @@ impl<const N: usize> Line<N> {
             limits: first.limits,
             serves: first.serves,
         }
+    }
+
+    /// The middle of a long move within limits.
+    pub(crate) fn middle(cruise: &Cruise<N>, limits: PathLimits) -> Self {
+        Self {
+            start: cruise.start,
+            end: cruise.end,
+            direction: cruise.direction,
+            limits,
+            serves: cruise.serves,
+        }
+    }
+
+    /// Pieces of the shaped motion from its start to its end with these speeds there (mm/s), without acceleration;
+    /// whether it is long enough.
+    pub(crate) fn travel_shaped(
+        &self,
+        [from, to]: [f64; 2],
+        shaper: &mut Shaper,
+        mut take: impl FnMut(Piece<N>),
+    ) -> bool {
+        // The mean of the same motion begun later lags behind it.
+        let (longest, mean) = shaper.delays();
+        let length = (self.end - self.start).norm();
+        let shaped = length - from * mean - to * (longest - mean);
+        let Some(feed) = (shaped > 0.0)
+            .then(|| SCurve::over(shaped, &connection(&self.limits, [from, to])).ok())
+            .flatten()
+        else {
+            return false;
+        };
+        let (mut position, mut velocity, mut acceleration) = (0.0_f64, from, 0.0_f64);
+        let mut pieces = shaper.shape(&feed).peekable();
+        while let Some((duration, jerk)) = pieces.next() {
+            let start = Sample {
+                position: self.start + self.direction * position,
+                velocity: self.direction * velocity,
+                acceleration: self.direction * acceleration,
+                jerk: self.direction * jerk,
+            };
+            let h = duration;
+            position += (velocity + (acceleration + jerk * (h / 3.0)) * (0.5 * h)) * h;
+            velocity += (acceleration + jerk * (0.5 * h)) * h;
+            acceleration += jerk * h;
+            let end = if pieces.peek().is_none() {
+                self.end
+            } else {
+                self.start + self.direction * position
+            };
+            take(Piece::new(&start, duration, end, self.serves));
+        }
+        true
     }
 
     /// Pieces from its start to its end with these speeds there (mm/s), without acceleration; whether

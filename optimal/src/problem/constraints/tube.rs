@@ -20,6 +20,7 @@ pub(crate) struct InTube<const N: usize> {
     cone: Cone<N>,
     low: Side,
     high: Side,
+    wall: Side,
     progress: f64,
     progress_change: f64,
     /// How the progress of a capsule follows point and excess: curvature, its reciprocal, slope.
@@ -27,6 +28,8 @@ pub(crate) struct InTube<const N: usize> {
     by_excess: f64,
     by_curvature: f64,
     slope: f64,
+    /// Slope of the square of the distance from the middle.
+    pull: Vector<N>,
 }
 
 /// A tube around a segment.
@@ -41,6 +44,11 @@ pub(crate) struct Tube<const N: usize> {
     pub(crate) room: f64,
     /// Whether its ends are round.
     pub(crate) capsule: bool,
+    /// Weight of half the square of the distance from its line, in shares of the radius.
+    pub(crate) centring: f64,
+    /// The side that is kept: a vector across the line whose product with an offset is what the offset uses of a unit
+    /// of excess there, and how much is free.
+    pub(crate) wall: Option<(Vector<N>, f64)>,
 }
 
 impl<const N: usize> Tube<N> {
@@ -84,6 +92,21 @@ impl<const N: usize> Tube<N> {
         }
     }
 
+    /// Offset of a point from the line, mm.
+    #[inline(always)]
+    pub(crate) fn offset(&self, point: &Vector<N>) -> Vector<N> {
+        let from_start = point - self.start;
+        from_start - self.direction * self.direction.dot(&from_start)
+    }
+
+    /// What is left of the room on the side that is kept; `None` where none is.
+    #[inline(always)]
+    fn wall_value(&self, point: &Vector<N>, excess: f64) -> Option<f64> {
+        self.wall
+            .as_ref()
+            .map(|(across, room)| room + excess - across.dot(&(point - self.start)))
+    }
+
     #[inline(always)]
     fn along(&self, of: &Vector<N>) -> f64 {
         self.direction.dot(of) / self.length
@@ -96,12 +119,14 @@ impl<const N: usize> Default for InTube<N> {
             cone: Cone::default(),
             low: Side::default(),
             high: Side::default(),
+            wall: Side::default(),
             progress: 0.5,
             progress_change: 0.0,
             by_point: Vector::zeros(),
             by_excess: 0.0,
             by_curvature: 0.0,
             slope: 0.0,
+            pull: Vector::zeros(),
         }
     }
 }
@@ -124,6 +149,18 @@ impl<const N: usize> InTube<N> {
             slope.excess += low + high;
         }
         slope
+    }
+
+    /// Adds the pull to the middle of the tube.
+    #[inline(always)]
+    fn centre(&mut self, bound: &Tube<N>, point: &Vector<N>, local: &mut Local<N>) {
+        let weight = bound.centring * bound.by_radius * bound.by_radius;
+        self.pull = bound.offset(point) * weight;
+        local.slope.point += self.pull;
+        for axis in 0..N {
+            local.point[(axis, axis)] += weight;
+        }
+        local.point -= outer(&bound.direction, &(bound.direction * weight));
     }
 
     /// Change of the progress of a capsule that goes with the changes of point and excess.
@@ -176,6 +213,10 @@ impl<const N: usize> Rows<N> for InTube<N> {
         let low = self.low.reset_inside(low, least);
         let beyond = low.max(self.high.reset_inside(high, least));
         let outside = self.cone.reset(&bound.value(point, excess, self.progress));
+        let outside = match bound.wall_value(point, excess) {
+            Some(value) => outside.max(self.wall.reset(value)),
+            None => outside,
+        };
         outside.max(if bound.capsule { 0.0 } else { beyond })
     }
 
@@ -219,6 +260,17 @@ impl<const N: usize> Rows<N> for InTube<N> {
             local.excess = head + low.0 + high.0;
         }
         local.slope = self.gather(bound, &residual, low.1, high.1);
+        if bound.centring > 0.0 {
+            self.centre(bound, point, &mut local);
+        }
+        if let (Some((across, _)), Some(value)) = (&bound.wall, bound.wall_value(point, excess)) {
+            let (weight, residual) = self.wall.weigh(value, sums);
+            local.point += outer(across, &(across * weight));
+            local.mixed -= across * weight;
+            local.excess += weight;
+            local.slope.point -= across * residual;
+            local.slope.excess += residual;
+        }
         local
     }
 
@@ -228,6 +280,9 @@ impl<const N: usize> Rows<N> for InTube<N> {
         let ends = self.changes(bound, change, excess);
         self.low.predict(ends.0, reach);
         self.high.predict(ends.1, reach);
+        if let Some((across, _)) = &bound.wall {
+            self.wall.predict(excess - across.dot(change), reach);
+        }
         self.cone
             .predict(&bound.change(change, excess, self.progress_change), reach);
     }
@@ -237,7 +292,16 @@ impl<const N: usize> Rows<N> for InTube<N> {
         let low = self.low.correct(centre);
         let high = self.high.correct(centre);
         let cone = self.cone.correct(centre);
-        self.gather(bound, &cone, low, high)
+        let mut slope = self.gather(bound, &cone, low, high);
+        if bound.centring > 0.0 {
+            slope.point += self.pull;
+        }
+        if let Some((across, _)) = &bound.wall {
+            let wall = self.wall.correct(centre);
+            slope.point -= across * wall;
+            slope.excess += wall;
+        }
+        slope
     }
 
     #[inline(always)]
@@ -246,6 +310,9 @@ impl<const N: usize> Rows<N> for InTube<N> {
         let ends = self.changes(bound, change, excess);
         self.low.aim(ends.0, reach);
         self.high.aim(ends.1, reach);
+        if let Some((across, _)) = &bound.wall {
+            self.wall.aim(excess - across.dot(change), reach);
+        }
         self.cone
             .aim(&bound.change(change, excess, self.progress_change), reach);
     }
@@ -255,6 +322,7 @@ impl<const N: usize> Rows<N> for InTube<N> {
         self.progress += primal * self.progress_change;
         self.low.advance(primal, dual);
         self.high.advance(primal, dual);
+        self.wall.advance(primal, dual);
         self.cone.advance(primal, dual);
     }
 }

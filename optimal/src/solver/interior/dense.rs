@@ -188,6 +188,8 @@ fn bend() -> (Vec<WindowSegment<2>>, Limits<2>, Vec<f64>) {
             corner_tolerance: Some(0.015),
             feedrate: [80.0, 50.0, 80.0][index],
             steps: [10, 8, 9][index],
+            follow: None,
+            walls: [None; 2],
         })
         .collect();
     let limits = Limits::uniform(60.0, 2000.0, 5e4).unwrap();
@@ -206,6 +208,7 @@ fn the_sweep_solves_what_a_dense_factorisation_solves() {
         end: EndState::rest(segments[2].end),
         segments: &segments,
         limits: &limits,
+        silence: None,
     };
     for goal in [
         Goal::Shorten { excess: 50.0 },

@@ -36,6 +36,8 @@ fn solves<const N: usize>(
             corner_tolerance: Some(tolerance),
             feedrate: if segments.len() % 2 == 0 { 90.0 } else { 40.0 },
             steps: *steps,
+            follow: None,
+            walls: [None; 2],
         });
         durations.push(0.04 + length / 50.0);
         corner += way;
@@ -48,6 +50,7 @@ fn solves<const N: usize>(
         end: EndState::rest(corner),
         segments: &segments,
         limits,
+        silence: None,
     };
     let mut problem = Problem::default();
     problem.load(&window).unwrap();

@@ -8,6 +8,7 @@
 //! Source: Mehrotra's method with the scaling of Nesterov and Todd. Not here: what to do with the
 //! stretches, see [`durations`](crate::solver::sequential).
 
+pub(crate) mod border;
 mod passes;
 mod start;
 mod sweep;
@@ -26,6 +27,7 @@ use crate::problem::constraints::Rows;
 use crate::problem::{NodeRows, Problem};
 use crate::solver::cone::{Centre, Reach, Side, Sums};
 use crate::solver::riccati::{Gain, StretchGain};
+use border::Border;
 use passes::{Advance, Aim, Predict};
 use sweep::Tail;
 use toolglide_kinematics::Vector;
@@ -69,6 +71,12 @@ pub(crate) enum Goal {
     Restore {
         /// Excess that suffices.
         enough: f64,
+    },
+    /// The mean square of jerk and of the distance from the path, and the excess with this weight, with
+    /// durations fixed.
+    Smooth {
+        /// Weight of the excess.
+        excess: f64,
     },
 }
 
@@ -123,6 +131,7 @@ pub(crate) struct Interior<const N: usize> {
     jerk_changes: Vec<Vector<N>>,
     stretch_changes: Vec<f64>,
     excess_change: f64,
+    border: Border<N>,
 }
 
 impl<const N: usize> Interior<N> {
@@ -140,6 +149,11 @@ impl<const N: usize> Interior<N> {
         self.stretch_rows.reserve(segments);
         self.stretch_gains.reserve(segments);
         self.stretch_changes.reserve(segments);
+    }
+
+    /// Makes room for so many end conditions.
+    pub(crate) fn reserve_conditions(&mut self, conditions: usize, segments: usize, steps: usize) {
+        self.border.reserve(conditions, segments, steps);
     }
 
     /// Solves a problem from the states and jerks at hand, in at most so many iterations.
@@ -356,7 +370,7 @@ fn centre(complementarity: f64, reach: &Reach, degree: f64, keep: f64) -> Centre
 
 fn weight_of_excess(goal: Goal) -> f64 {
     match goal {
-        Goal::Shorten { excess } => excess,
+        Goal::Shorten { excess } | Goal::Smooth { excess } => excess,
         Goal::Restore { .. } => 1.0,
     }
 }

@@ -63,7 +63,7 @@ impl<const N: usize> Interior<N> {
             }
         }
         let floor = match goal {
-            Goal::Shorten { .. } => 0.0,
+            Goal::Shorten { .. } | Goal::Smooth { .. } => 0.0,
             Goal::Restore { .. } => -0.5,
         };
         self.excess = FIRST_EXCESS;

@@ -14,14 +14,14 @@ use crate::solver::riccati::{Cost, Form, Gradient, Interval, Local, Slope};
 use toolglide_kinematics::Vector;
 
 /// The last intervals, whose jerks the end state demands.
-const LAST: usize = 3;
+pub(super) const LAST: usize = 3;
 
 /// The last intervals as what follows from the state before them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tail<const N: usize> {
-    states: [[Form<N>; 3]; LAST - 1],
+    pub(super) states: [[Form<N>; 3]; LAST - 1],
     coefficients: [Form<N>; LAST],
-    jerks: [Form<N>; LAST],
+    pub(super) jerks: [Form<N>; LAST],
     state_pushes: [Gradient<N>; LAST - 1],
     jerk_pushes: [Slope<N>; LAST],
 }
@@ -99,7 +99,11 @@ impl<const N: usize> Interior<N> {
             cost.excess.max(0.0) + row.0,
             cost.slope.excess + row.1 + weight_of_excess(goal) * unit,
         ];
-        self.excess_gain[0] > 0.0
+        if self.excess_gain[0] > 0.0 {
+            self.answer_conditions(problem, goal, unit);
+            return true;
+        }
+        false
     }
 
     pub(super) fn weigh_jerk(
@@ -110,6 +114,7 @@ impl<const N: usize> Interior<N> {
         sums: &mut Sums,
     ) -> Local<N> {
         let by_jerk = problem.by_jerk();
+        let smoothing = smoothing * problem.time_weight(interval);
         let jerk = self.jerks[interval];
         let mut local = self.rows[interval]
             .jerk
@@ -233,6 +238,7 @@ impl<const N: usize> Interior<N> {
                 .map(|form| form.value(&state, stretch));
             self.state_changes[node] = problem.basis(node).state(&later);
         }
+        self.meet_conditions(problem);
     }
 
     /// Slopes towards a centre, eliminated with the gains at hand.
@@ -311,6 +317,7 @@ impl<const N: usize> Interior<N> {
         centre: Centre,
     ) -> Slope<N> {
         let by_jerk = problem.by_jerk();
+        let smoothing = smoothing * problem.time_weight(interval);
         let mut slope = self.rows[interval].jerk.correct(by_jerk, centre);
         for axis in 0..N {
             slope.point[axis] +=

@@ -137,21 +137,31 @@ impl<const N: usize> Gradient<N> {
     #[inline(always)]
     pub(crate) fn back(&mut self, interval: &Interval<N>, jerk: &Slope<N>, gain: &mut Gain<N>) {
         self.plus(&gain.push);
+        gain.offset = self.eliminate(interval, jerk, gain);
+    }
+
+    /// The same where nothing is missed; gives the offset of what is eliminated.
+    #[inline(always)]
+    pub(crate) fn eliminate(
+        &mut self,
+        interval: &Interval<N>,
+        jerk: &Slope<N>,
+        gain: &Gain<N>,
+    ) -> Vector<N> {
         for (state, by_stretch) in self.state.iter().zip(&interval.by_stretch) {
             self.stretch += state.dot(by_stretch);
         }
         let weights = interval.jerk;
         let last = self.state[2] + jerk.point * weights[3];
-        gain.offset = gain.root.share(last);
+        let offset = gain.root.share(last);
         self.state = [
-            jerk.point * weights[0] - transposed_times(&gain.state[0], &gain.offset),
-            self.state[0] + jerk.point * weights[1]
-                - transposed_times(&gain.state[1], &gain.offset),
-            self.state[1] + jerk.point * weights[2]
-                - transposed_times(&gain.state[2], &gain.offset),
+            jerk.point * weights[0] - transposed_times(&gain.state[0], &offset),
+            self.state[0] + jerk.point * weights[1] - transposed_times(&gain.state[1], &offset),
+            self.state[1] + jerk.point * weights[2] - transposed_times(&gain.state[2], &offset),
         ];
-        self.stretch -= gain.stretch.dot(&gain.offset);
-        self.excess += jerk.excess - gain.excess.dot(&gain.offset);
+        self.stretch -= gain.stretch.dot(&offset);
+        self.excess += jerk.excess - gain.excess.dot(&offset);
+        offset
     }
 }
 
@@ -191,7 +201,24 @@ impl<const N: usize> Gain<N> {
         excess: f64,
         miss: &[Vector<N>; 3],
     ) -> (Vector<N>, [Vector<N>; 3]) {
-        let mut last = self.offset + self.stretch * stretch + self.excess * excess;
+        let (jerk, mut end) = self.answer(interval, state, stretch, excess, &self.offset);
+        for (end, miss) in end.iter_mut().zip(miss) {
+            *end += miss;
+        }
+        (jerk, end)
+    }
+
+    /// The same with another offset, where nothing is missed.
+    #[inline(always)]
+    pub(crate) fn answer(
+        &self,
+        interval: &Interval<N>,
+        state: &[Vector<N>; 3],
+        stretch: f64,
+        excess: f64,
+        offset: &Vector<N>,
+    ) -> (Vector<N>, [Vector<N>; 3]) {
+        let mut last = offset + self.stretch * stretch + self.excess * excess;
         for (gain, state) in self.state.iter().zip(state) {
             last += times(gain, state);
         }
@@ -203,7 +230,7 @@ impl<const N: usize> Gain<N> {
             + last * weights[3];
         let mut end = [state[1], state[2], last];
         for index in 0..3 {
-            end[index] += interval.by_stretch[index] * stretch + miss[index];
+            end[index] += interval.by_stretch[index] * stretch;
         }
         (jerk, end)
     }
@@ -232,7 +259,13 @@ impl<const N: usize> Default for StretchGain<N> {
 impl<const N: usize> StretchGain<N> {
     pub(crate) fn back(&mut self, gradient: &mut Gradient<N>) {
         self.slope = gradient.stretch;
-        let share = self.slope * self.by_curvature;
+        self.eliminate(gradient);
+    }
+
+    /// The same with the slope that the gradient has, which is not kept.
+    #[inline(always)]
+    pub(crate) fn eliminate(&self, gradient: &mut Gradient<N>) {
+        let share = gradient.stretch * self.by_curvature;
         for order in 0..3 {
             gradient.state[order] -= self.state[order] * share;
         }
@@ -241,7 +274,13 @@ impl<const N: usize> StretchGain<N> {
     }
 
     pub(crate) fn forward(&self, state: &State<N>, excess: f64) -> f64 {
-        let mut slope = self.slope + self.excess * excess;
+        self.answer(self.slope, state, excess)
+    }
+
+    /// The same with another slope.
+    #[inline(always)]
+    pub(crate) fn answer(&self, slope: f64, state: &State<N>, excess: f64) -> f64 {
+        let mut slope = slope + self.excess * excess;
         for order in 0..3 {
             slope += self.state[order].dot(&state[order]);
         }

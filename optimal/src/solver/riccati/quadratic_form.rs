@@ -33,7 +33,12 @@ impl<const N: usize> Default for Form<N> {
 
 impl<const N: usize> Form<N> {
     pub(crate) fn value(&self, state: &State<N>, stretch: f64) -> Vector<N> {
-        let mut value = self.offset + self.stretch * stretch;
+        self.offset + self.linear(state, stretch)
+    }
+
+    /// The same without its offset.
+    pub(crate) fn linear(&self, state: &State<N>, stretch: f64) -> Vector<N> {
+        let mut value = self.stretch * stretch;
         for order in 0..3 {
             value += state[order] * self.state[order];
         }

@@ -7,6 +7,7 @@
 //! any formula of a solver.
 
 mod hull;
+pub(crate) mod silence;
 
 use crate::window::{EndState, Window, WindowMotion, WindowSegment};
 use hull::{distance, hull, share_of};
@@ -16,6 +17,9 @@ use toolglide_kinematics::numeric::LENGTH_SLACK;
 
 /// Relative room granted to a limit: a tenth of what the judge of a whole motion grants.
 const SLACK: f64 = 1e-10;
+
+/// Room granted to a side that is kept, mm: what the solver leaves of its excess.
+const WALL_SLACK: f64 = 8e-7;
 
 /// How often a hull is cut in halves at most.
 const MAX_HALVINGS: u32 = 5;
@@ -78,7 +82,7 @@ pub(crate) fn accept<const N: usize>(
 }
 
 /// Durations of the intervals, in order.
-fn intervals<'a, const N: usize>(
+pub(super) fn intervals<'a, const N: usize>(
     segments: &'a [WindowSegment<N>],
     durations: &'a [f64],
 ) -> impl Iterator<Item = (usize, f64)> + 'a {
@@ -250,6 +254,16 @@ fn check<const N: usize>(window: &Window<'_, N>, motion: &WindowMotion<N>) -> Re
                 (distance(segment, place) - room) / segment.tolerance
             }),
         )?;
+        let half = usize::from(2 * (segment.steps - 1 - left_in_segment) >= segment.steps);
+        if let Some(wall) = &segment.walls[half] {
+            exceeds(
+                "side",
+                hull(places, MAX_HALVINGS, &|place| {
+                    let beyond = wall.outward.dot(&(place - segment.start)) - wall.allowed;
+                    1.0 + (beyond - WALL_SLACK) / segment.tolerance
+                }),
+            )?;
+        }
         if left_in_segment == 0
             && let Some(ball) = segment.corner_tolerance
         {
@@ -278,6 +292,8 @@ mod tests {
             corner_tolerance: None,
             feedrate: 100.0,
             steps: 4,
+            follow: None,
+            walls: [None; 2],
         }];
         let jerk = Vector::<2>::new(32.0 * length / duration.powi(3), 0.0);
         let motion = WindowMotion {
@@ -294,6 +310,7 @@ mod tests {
             end: EndState::rest(segments[segments.len() - 1].end),
             segments,
             limits: &limits(),
+            silence: None,
         };
         accept(&window, motion)
     }

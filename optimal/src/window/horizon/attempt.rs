@@ -7,7 +7,8 @@
 use crate::path::spans::steps;
 use crate::solver::budget::Budget;
 use crate::window::check::accept;
-use crate::window::horizon::{Horizon, MARGIN};
+use crate::window::check::silence::comes_to_rest;
+use crate::window::horizon::{Horizon, MARGIN, SILENT_STEPS};
 use crate::window::straight_line;
 use crate::window::{EndState, Window, WindowMotion, WindowSegment, WindowSolver};
 use toolglide_kinematics::Vector;
@@ -24,6 +25,9 @@ const WORSE: f64 = 1.001;
 
 /// One part in so many of what is left for a window is kept for trying it again.
 const RETRY_SHARE: u64 = 3;
+
+/// How much slower than their guess new spans behind a plan are taken to be where modes must rest.
+const BEHIND: f64 = 1.4;
 
 /// How much slower than from rest to rest the guess of new spans is, on a grid of intervals.
 const STOPPING: f64 = 1.2;
@@ -68,10 +72,26 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
 
     /// Cuts the time of the first `count` spans into intervals, where that has not been done.
     fn cut_time(&mut self, count: usize) {
+        let slower = self.slower_for_silence(count);
         let free = self.free.times.iter().zip(&self.free.steady);
         for (span, (duration, steady)) in self.spans.iter_mut().zip(free).take(count) {
             if span.steps == 0 {
-                span.steps = span.steps_for(*duration, *steady);
+                span.steps = span.steps_for(slower * duration, *steady);
+            }
+        }
+        if !self.swings.is_empty() {
+            self.cut_finely_enough(count);
+        }
+    }
+
+    /// Gives the spans of a window as many intervals as its end conditions need; those that are planned keep theirs.
+    fn cut_finely_enough(&mut self, count: usize) {
+        let all: usize = self.spans.range(..count).map(|span| span.steps).sum();
+        let new = count - self.planned;
+        if all < SILENT_STEPS && new > 0 {
+            let more = (SILENT_STEPS - all).div_ceil(new);
+            for span in self.spans.range_mut(self.planned..count) {
+                span.steps += more;
             }
         }
     }
@@ -82,7 +102,12 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.guess
             .fill(self.spans.range(..count), speed, open, self.weakest);
         self.lay_segments(count);
-        self.guess_motion(count);
+        if self.swings.is_empty() || self.planned == 0 {
+            self.guess_motion(count);
+        } else {
+            // A plan that ends silent is not silent in another time.
+            self.keep_plan(count);
+        }
         // Something is left for another guess, or for fewer spans.
         let kept = self.budget.work / RETRY_SHARE;
         self.budget.work -= kept;
@@ -125,6 +150,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.segments.clear();
         for (index, span) in self.spans.range(..count).enumerate() {
             let next = self.spans.get(index + 1).filter(|_| index + 1 < count);
+            let walls = self.walls(index);
             self.segments.push(WindowSegment {
                 start: span.start,
                 end: span.end,
@@ -132,6 +158,8 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 corner_tolerance: next.map(|next| span.balls[1].min(next.balls[0])),
                 feedrate: span.feedrate,
                 steps: span.steps,
+                follow: span.follow,
+                walls,
             });
         }
         self.shrunk_segments.clear();
@@ -163,12 +191,23 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         self.ratios.sort_unstable_by(f64::total_cmp);
         let usual = match self.ratios.get(self.ratios.len() / 2) {
             Some(median) => median.clamp(FACTORS.0, FACTORS.1),
-            None => FROM_REST,
+            None => FROM_REST * self.slower_for_silence(count),
         };
         let new = self.guess.times[self.planned.min(count)..count].iter();
         self.candidate
             .durations
             .extend(new.map(|time| time * usual));
+        self.guess_states();
+    }
+
+    /// The plan there is, and new spans a little slower than their guess behind it.
+    fn keep_plan(&mut self, count: usize) {
+        self.candidate.durations.clear();
+        self.candidate.durations.extend(&self.current.durations);
+        let new = self.guess.times[self.planned..count].iter();
+        self.candidate
+            .durations
+            .extend(new.map(|time| BEHIND * time));
         self.guess_states();
     }
 
@@ -184,7 +223,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     }
 
     /// States and jerks for the durations of the candidate: those of the plan in its own time, and
-    /// constant speed along what is new.
+    /// constant speed along what is new, on the arc where that is followed.
     fn guess_states(&mut self) {
         let end = self.end(self.segments.len());
         let WindowMotion {
@@ -212,11 +251,15 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 continue;
             }
             let span = segment.end - segment.start;
+            let arc = segment
+                .follow
+                .map_or(Vector::zeros(), |follow| follow.sagitta * 4.0);
             for step in 0..segment.steps {
+                let share = steps(step) / steps(segment.steps);
                 states.push(EndState {
-                    position: segment.start + span * (steps(step) / steps(segment.steps)),
-                    velocity: span / duration,
-                    acceleration: Vector::zeros(),
+                    position: segment.start + span * share + arc * (share * (1.0 - share)),
+                    velocity: (span + arc * (1.0 - 2.0 * share)) / duration,
+                    acceleration: arc * (-2.0 / (duration * duration)),
                 });
                 jerks.push(Vector::zeros());
             }
@@ -234,6 +277,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             end: self.end(count),
             segments: &self.shrunk_segments,
             limits: &self.shrunk,
+            silence: self.ends_silent(count).then(|| self.swings.silence()),
         };
         let solved = self
             .solver
@@ -247,5 +291,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             ..window
         };
         accept(&window, &mut self.candidate).is_ok()
+            && (window.silence.is_none()
+                || comes_to_rest(&window, &self.candidate, &mut self.trial))
     }
 }

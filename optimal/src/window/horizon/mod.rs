@@ -12,14 +12,16 @@ mod attempt;
 mod travel;
 
 use crate::path::spans::{Span, weakest};
-use crate::settings::Settings;
+use crate::settings::{Settings, Smoothing};
 use crate::solver::budget::{Budget, Credit};
 use crate::window::initial_guess::Guess;
 use crate::window::output::Event;
+use crate::window::shaped_line::Shaper;
 use crate::window::straight_line;
-use crate::window::{EndState, WindowMotion, WindowSegment, WindowSolver};
+use crate::window::swings::Swings;
+use crate::window::{EndState, Wall, WindowMotion, WindowSegment, WindowSolver};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Vector, WindowTally};
+use toolglide_kinematics::{Limits, PathSide, Vector, WindowTally};
 
 /// What is handed out of a window, in times to stop.
 const COMMIT: f64 = 4.0;
@@ -34,6 +36,12 @@ const LONGER: f64 = 2.5;
 /// How many more intervals a stretch has that is planned at once: there is but one window to be solved.
 const REFINED: f64 = 1.3;
 
+/// The same where modes of vibration take some of their freedom.
+const REFINED_SILENT: f64 = 1.7;
+
+/// So many intervals are few for a window.
+const FEW: f64 = 200.0;
+
 /// Fewest spans of a window, where there are as many.
 const MIN_SPANS: usize = 4;
 
@@ -45,6 +53,18 @@ const MAX_STEPS: usize = 560;
 
 /// Room for the intervals of a window, whose last span may reach beyond the most.
 pub(crate) const ROOM: usize = MAX_STEPS + crate::path::spans::MAX_STEPS;
+
+/// How much longer windows are with modes of vibration, in periods of the slowest.
+const MORE_PERIODS: f64 = 2.0;
+
+/// Least duration of motion from rest to rest that leaves every mode at rest, in periods of the slowest.
+const SILENT_PERIODS: f64 = 1.4;
+
+/// Fewest intervals of a window that ends silent: beyond those for the end, so many for each condition of an axis.
+const SILENT_STEPS: usize = 24;
+
+/// Sine of a turn below which there is no corner.
+const STRAIGHT: f64 = 1e-6;
 
 /// Share of every limit that is kept back from the solver, which meets them to its own precision only.
 const MARGIN: f64 = 2e-4;
@@ -85,6 +105,18 @@ pub(crate) struct Horizon<S, const N: usize> {
     given_up: bool,
     /// Whether the motion is being executed, so that nothing is given up.
     leading: bool,
+    /// Modes of vibration, at where motion has been handed out to and at the end of a window.
+    pub(super) swings: Swings,
+    pub(super) trial: Swings,
+    pub(super) shaper: Shaper,
+    /// Period of the slowest mode, s; 0 without any.
+    longest_period: f64,
+    /// Whether the goal is one of rest, or of constant velocity, so that modes stay at rest behind it.
+    silent_goal: bool,
+    side: PathSide,
+    overshoot: f64,
+    /// Direction of the last span that was handed out, where the motion did not rest behind it.
+    pub(super) direction_before: Option<Vector<N>>,
 }
 
 fn motion_for<const N: usize>() -> WindowMotion<N> {
@@ -123,10 +155,22 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             ratios: Vec::with_capacity(MAX_SPANS),
             events: VecDeque::with_capacity(2 * MAX_STEPS),
             tally: WindowTally::default(),
-            credit: Credit::new(N),
+            credit: Credit::new(
+                N,
+                settings.smoothing > Smoothing::NONE,
+                settings.modes.len(),
+            ),
             budget: Budget::default(),
             given_up: false,
             leading: false,
+            swings: Swings::new(&settings.modes, &settings.limits),
+            trial: Swings::new(&settings.modes, &settings.limits),
+            shaper: Shaper::with_room(),
+            longest_period: settings.modes.longest_period(),
+            silent_goal: true,
+            side: settings.side,
+            overshoot: settings.overshoot,
+            direction_before: None,
         }
     }
 
@@ -202,7 +246,8 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         let speed = self.start.velocity.norm();
         let open = !closing || self.passes();
         self.free.fill(self.spans.iter(), speed, open, self.weakest);
-        let (reach, enough) = self.reach(self.window, MIN_SPANS);
+        let more = MORE_PERIODS * self.longest_period;
+        let (reach, enough) = self.reach(self.window, more, MIN_SPANS);
         let mut window = reach.max((self.planned + 1).min(known));
         if closing && self.fits_at_once(known) {
             window = known;
@@ -215,18 +260,23 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             return true;
         }
         // What comes after the window is known, too: the path may end there.
-        let enough = enough && self.reach(self.window + LONGER, MIN_SPANS).1;
+        let enough = enough && self.reach(self.window + LONGER, more, MIN_SPANS).1;
         if !closing && (!enough || window == self.planned) {
             return false;
         }
-        if closing && self.planned == 0 && straight_line::on_one_line(self.spans.iter()) == known {
+        let closed_form = self.swings.is_empty();
+        if closed_form
+            && closing
+            && self.planned == 0
+            && straight_line::on_one_line(self.spans.iter()) == known
+        {
             // A straight line is known in closed form.
             self.travel_a_line();
             return true;
         }
         self.tally.windows += 1;
         if let Some(planned) = self.improve(window) {
-            let (first, _) = self.reach(COMMIT, 1);
+            let (first, _) = self.reach(COMMIT, 0.0, 1);
             let part = if closing && planned == known {
                 known
             } else {
@@ -249,12 +299,12 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
     }
 
-    /// How many spans take some times to stop, and whether there are as many.
-    fn reach(&mut self, stops: f64, fewest: usize) -> (usize, bool) {
+    /// How many spans take some times to stop and `more` seconds, and whether there are as many.
+    fn reach(&mut self, stops: f64, more: f64, fewest: usize) -> (usize, bool) {
         let (mut time, mut stop_time, mut nodes) = (0.0, 0.0_f64, 0);
         let free = self.free.times.iter().zip(&self.free.steady);
         for (index, (span, (duration, steady))) in self.spans.iter().zip(free).enumerate() {
-            if index >= fewest && time >= stops * stop_time {
+            if index >= fewest && time >= stops * stop_time + more {
                 return (index, true);
             }
             let steps = if span.steps > 0 {
@@ -269,23 +319,79 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             time += duration;
             stop_time = stop_time.max(span.stop_time);
         }
-        let enough = time >= stops * stop_time && self.spans.len() >= fewest;
+        let enough = time >= stops * stop_time + more && self.spans.len() >= fewest;
         (self.spans.len(), enough)
     }
 
     /// Cuts the time of a stretch that is planned at once more finely.
     fn refine(&mut self) {
+        let whole: f64 = self.free.times.iter().sum();
+        let intervals = self.spans.iter().map(|span| whole / span.interval);
+        let few = intervals.fold(0.0, f64::max) < FEW;
+        let finer = if few && !self.swings.is_empty() {
+            REFINED_SILENT
+        } else {
+            REFINED
+        };
+        let slower = finer * self.slower_for_silence(self.spans.len());
         let free = self.free.times.iter().zip(&self.free.steady);
         for (span, (duration, steady)) in self.spans.iter_mut().zip(free) {
             if span.steps == 0 {
-                span.steps = span.steps_for(REFINED * duration, *steady);
+                span.steps = span.steps_for(slower * duration, *steady);
             }
         }
     }
 
     /// Whether all that is left makes one window that is not much longer than usual.
     fn fits_at_once(&mut self, known: usize) -> bool {
-        self.reach(self.window + LONGER, MIN_SPANS).0 == known
+        let more = MORE_PERIODS * self.longest_period;
+        self.reach(self.window + LONGER, more, MIN_SPANS).0 == known
+    }
+
+    /// Whether modes must rest where a window of the first `count` spans ends; a goal may keep them swinging.
+    fn ends_silent(&self, count: usize) -> bool {
+        let at_goal = self.goal.is_some() && count == self.spans.len();
+        (self.silent_goal || !at_goal) && !self.swings.is_empty()
+    }
+
+    /// How much longer than their guess spans take to leave the modes at rest, where they begin and end at rest.
+    fn slower_for_silence(&self, count: usize) -> f64 {
+        if self.longest_period > 0.0 && self.planned == 0 && !self.moves() {
+            let whole: f64 = self.free.times.iter().take(count).sum();
+            (SILENT_PERIODS * self.longest_period / whole).max(1.0)
+        } else {
+            1.0
+        }
+    }
+
+    /// Sides that a span keeps over its two halves.
+    pub(super) fn walls(&self, index: usize) -> [Option<Wall<N>>; 2] {
+        let span = &self.spans[index];
+        if self.side == PathSide::Both || span.curved {
+            return [None; 2];
+        }
+        let allowed = self.overshoot;
+        if let Some(outward) = self.side.across(&span.direction) {
+            return [Some(Wall { outward, allowed }); 2];
+        }
+        if self.side != PathSide::Inside {
+            return [None; 2];
+        }
+        let before = index
+            .checked_sub(1)
+            .map_or(self.direction_before, |before| {
+                self.spans.get(before).map(|span| span.direction)
+            });
+        let next = self.spans.get(index + 1).map(|span| span.direction);
+        [before.map(|other| -other), next].map(|other| {
+            let other = other?;
+            let inside = other - span.direction * span.direction.dot(&other);
+            let sine = inside.norm();
+            (sine > STRAIGHT).then(|| Wall {
+                outward: inside / -sine,
+                allowed,
+            })
+        })
     }
 
     /// Where a window of the first `count` spans ends: at rest, or at the goal.

@@ -8,6 +8,7 @@ use crate::window::horizon::Horizon;
 use crate::window::output::{Event, Joint};
 use crate::window::straight_line;
 use crate::window::straight_line::Line;
+use crate::window::swings::Swings;
 use crate::window::{EndState, WindowSolver};
 use toolglide_kinematics::{MoveRange, Piece, Sample};
 
@@ -22,19 +23,52 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             ..EndState::rest(position)
         };
         self.close(at(cruise.start));
-        // Where no window led to it, the motion rests here.
-        let entry = if self.moves() { speed } else { 0.0 };
-        let line = Line {
-            start: cruise.start,
-            end: cruise.end,
-            direction,
-            limits: cruise.limits,
-            serves: cruise.serves,
-        };
-        if !line.travel([entry, speed], |piece| self.pass(&piece, cruise)) {
-            self.events.push_back(Event::Lost);
+        if self.swings.is_empty() {
+            // Where no window led to it, the motion rests here.
+            let entry = if self.moves() { speed } else { 0.0 };
+            let line = Line::middle(cruise, cruise.limits);
+            if !line.travel([entry, speed], |piece| self.pass(&piece, cruise)) {
+                self.events.push_back(Event::Lost);
+            }
+        } else if !self.cruise_silently(cruise) {
+            self.start = EndState::rest(cruise.end);
+            return;
         }
         self.start = at(cruise.end);
+    }
+
+    /// Keeps the speed of the middle of a long move, or travels it from rest to rest; whether it ends moving.
+    fn cruise_silently(&mut self, cruise: &Cruise<N>) -> bool {
+        // A gain of speed would set modes swinging.
+        let speed = cruise.speed;
+        let mut limits = cruise.limits;
+        limits.velocity = speed;
+        let line = Line::middle(cruise, limits);
+        if self.moves() && line.travel([speed, speed], |piece| self.pass(&piece, cruise)) {
+            return true;
+        }
+        if !self.travel_silently(&line, [0.0, 0.0]) {
+            self.events.push_back(Event::Lost);
+        }
+        false
+    }
+
+    /// Travels a line so that modes of vibration come to rest; whether it is long enough.
+    fn travel_silently(&mut self, line: &Line<N>, speeds: [f64; 2]) -> bool {
+        self.shaper.fit(&self.swings.modes, &line.direction);
+        let (events, swings) = (&mut self.events, &mut self.swings);
+        line.travel_shaped(speeds, &mut self.shaper, |piece| {
+            follow(swings, &piece);
+            events.push_back(Event::Piece(piece));
+        })
+    }
+
+    fn travel_in_least_time(&mut self, line: &Line<N>, speeds: [f64; 2]) -> bool {
+        let (events, swings) = (&mut self.events, &mut self.swings);
+        line.travel(speeds, |piece| {
+            follow(swings, &piece);
+            events.push_back(Event::Piece(piece));
+        })
     }
 
     /// Hands out a piece of the middle of a long move, with a joint where that is at the feedrate.
@@ -69,11 +103,17 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// Hands out the plan of the first `count` spans.
     pub(super) fn commit(&mut self, count: usize) {
         let mut node = 0;
+        let last = self
+            .spans
+            .get(count.wrapping_sub(1))
+            .map(|span| span.direction);
         for (span, duration) in self.spans.drain(..count).zip(&self.current.durations) {
             self.credit.earn(*duration);
             let interval = duration / steps(span.steps);
             for _ in 0..span.steps {
                 let state = &self.current.states[node];
+                let jerk = &self.current.jerks[node];
+                self.swings.pass(&state.acceleration, jerk, interval);
                 let start = Sample {
                     position: state.position,
                     velocity: state.velocity,
@@ -85,6 +125,9 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 let piece = Piece::new(&start, interval, end, span.serves);
                 self.events.push_back(Event::Piece(piece));
             }
+        }
+        if let Some(last) = last {
+            self.direction_before = Some(last);
         }
         self.start = self.current.states[node];
         self.planned -= count;
@@ -107,17 +150,20 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         let entry = self.start.velocity.norm();
         let goal = self.end(count);
         let exit = goal.velocity.norm();
-        let mut end = goal;
-        if !line.travel([entry, exit], |piece| {
-            self.events.push_back(Event::Piece(piece))
-        }) {
-            end = EndState::rest(line.end);
-            if !line.travel([entry, 0.0], |piece| {
-                self.events.push_back(Event::Piece(piece))
-            }) {
+        let stop = EndState::rest(line.end);
+        let silent = !self.swings.is_empty();
+        let end = if silent && self.travel_silently(&line, [entry, exit]) {
+            goal
+        } else if silent && self.travel_silently(&line, [entry, 0.0]) {
+            stop
+        } else if self.travel_in_least_time(&line, [entry, exit]) {
+            goal
+        } else {
+            if !self.travel_in_least_time(&line, [entry, 0.0]) {
                 self.events.push_back(Event::Lost);
             }
-        }
+            stop
+        };
         self.start = end;
         for span in self.spans.drain(..count) {
             // Others would not stop here.
@@ -125,4 +171,9 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         }
         self.expected.clear();
     }
+}
+
+fn follow<const N: usize>(swings: &mut Swings, piece: &Piece<N>) {
+    let start = piece.at(0.0);
+    swings.pass(&start.acceleration, &start.jerk, piece.duration());
 }

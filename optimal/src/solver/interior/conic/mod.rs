@@ -6,7 +6,7 @@ use crate::solver::interior::*;
 use crate::window::{EndState, Window, WindowSegment};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use table::conic;
+use table::{conic, tubes};
 use toolglide_kinematics::{AxisLimits, Limits};
 
 const PRECISION: Precision = Precision {
@@ -14,6 +14,9 @@ const PRECISION: Precision = Precision {
     miss: 1e-10,
     smoothing: 1e-3,
 };
+
+/// Weight of the distance from the path where the motion is smoothed.
+const CENTRING: f64 = 1e-3;
 
 /// Relative difference of the objectives that two solvers of this precision may leave.
 const AGREEMENT: f64 = 1e-6;
@@ -43,6 +46,8 @@ fn compare<const N: usize>(
             corner_tolerance: Some(tolerance),
             feedrate: if segments.len() % 2 == 0 { 90.0 } else { 40.0 },
             steps: usize::from(*steps),
+            follow: None,
+            walls: [None; 2],
         });
         durations.push(0.04 + way.norm() / 50.0);
         corner += way;
@@ -57,6 +62,7 @@ fn compare<const N: usize>(
         end: EndState::rest(corner),
         segments: &segments,
         limits,
+        silence: None,
     };
     let mut problem = Problem::default();
     problem.load(&window).unwrap();
@@ -77,11 +83,14 @@ fn compare<const N: usize>(
     for goal in [
         Goal::Shorten { excess: 50.0 },
         Goal::Restore { enough: -1.0 },
+        Goal::Smooth { excess: 50.0 },
     ] {
         problem.set_base(match goal {
             Goal::Shorten { .. } => Some((&states, &jerks)),
-            Goal::Restore { .. } => None,
+            Goal::Restore { .. } | Goal::Smooth { .. } => None,
         });
+        let smoothing = matches!(goal, Goal::Smooth { .. });
+        problem.set_centring(smoothing.then_some(CENTRING));
         interior.trust = vec![0.3; segments.len()];
         interior.states.clone_from(&states);
         interior.jerks.clone_from(&jerks);
@@ -98,9 +107,15 @@ fn compare<const N: usize>(
                 own += problem.share(segment) * stretch;
             }
         }
-        for jerk in &interior.jerks {
+        for (interval, jerk) in interior.jerks.iter().enumerate() {
             let share = jerk.component_mul(problem.by_jerk()).norm_squared();
-            own += 0.5 * PRECISION.smoothing / unit * share;
+            own += 0.5 * PRECISION.smoothing * problem.time_weight(interval) / unit * share;
+        }
+        for (node, state) in interior.states.iter().enumerate() {
+            for (chain, tube) in tubes(&problem, node) {
+                let share = tube.offset(&chain.point(state, 0.0)) * tube.by_radius;
+                own += 0.5 * tube.centring / unit * share.norm_squared();
+            }
         }
         let Some(other) = conic(&problem, &interior.trust, goal) else {
             continue;

@@ -3,7 +3,7 @@
 //! Source: as [`problem`](crate::problem), written once more without chains and coefficients. Not here: what
 //! is compared.
 
-use crate::problem::constraints::{Constraint, Rows};
+use crate::problem::constraints::{Constraint, Rows, Tube};
 use crate::problem::{NodeRows, Problem, Visit};
 use crate::solver::interior::Goal;
 use crate::solver::interior::conic::{PRECISION, ROWS_PER_UNIT, weight_of_excess};
@@ -57,6 +57,8 @@ struct Table {
     entries: Vec<(usize, usize, f64)>,
     cones: Vec<SupportedConeT<f64>>,
     unknowns: usize,
+    /// Unknowns whose squares are minimised, and weights of half of those.
+    squares: Vec<(usize, f64)>,
 }
 
 impl Table {
@@ -82,6 +84,27 @@ impl<const N: usize> Visit<N> for List<N> {
     fn rows<R: Rows<N>>(&mut self, _: &mut R, bound: &R::Bound, chain: &Chain<N>) {
         self.points.push((*chain, R::kept(bound)));
     }
+}
+
+/// The tubes of a node, and which points of the motion keep to them.
+pub(super) fn tubes<const N: usize>(
+    problem: &Problem<N>,
+    node: usize,
+) -> impl Iterator<Item = (Chain<N>, Tube<N>)> {
+    let mut list = List { points: Vec::new() };
+    let mut rows = NodeRows::default();
+    if node < problem.steps() {
+        problem.visit_ahead(node, &mut rows, &mut list);
+    }
+    if node > 0 {
+        problem.visit_behind(node, &mut rows, &mut list);
+    }
+    list.points
+        .into_iter()
+        .filter_map(|(chain, kept)| match kept {
+            Constraint::Tube(tube) => Some((chain, tube)),
+            _ => None,
+        })
 }
 
 /// The objective that the general solver finds, in shares of the duration.
@@ -162,12 +185,12 @@ pub(super) fn conic<const N: usize>(
         }
         objective[at.stretch(segment)] = match goal {
             Goal::Shorten { .. } => problem.share(segment),
-            Goal::Restore { .. } => 0.0,
+            Goal::Restore { .. } | Goal::Smooth { .. } => 0.0,
         };
     }
     objective[excess] = weight_of_excess(goal);
     let floor = match goal {
-        Goal::Shorten { .. } => 0.0,
+        Goal::Shorten { .. } | Goal::Smooth { .. } => 0.0,
         Goal::Restore { .. } => 0.5,
     };
     table.positive(floor, &[(excess, 1.0)]);
@@ -177,8 +200,13 @@ pub(super) fn conic<const N: usize>(
             let share = problem.by_jerk()[axis];
             diagonal.push(at.jerk(interval, axis));
             let weight = share * at.unit(at.jerk(interval, axis));
-            weights.push(PRECISION.smoothing / unit * weight * weight);
+            let smoothing = PRECISION.smoothing * problem.time_weight(interval);
+            weights.push(smoothing / unit * weight * weight);
         }
+    }
+    for (unknown, weight) in &table.squares {
+        diagonal.push(*unknown);
+        weights.push(weight / unit);
     }
     let unknowns = table.unknowns;
     let square =
@@ -255,6 +283,18 @@ fn keep<const N: usize>(
             Constraint::Tube(tube) => {
                 let offset = tube.direction.dot(&tube.start) / tube.length;
                 let share = 1.0 / tube.length;
+                if tube.centring > 0.0 {
+                    for axis in 0..N {
+                        let direction = unit(axis) - tube.direction * tube.direction[axis];
+                        let mut entries = along(&direction, tube.by_radius);
+                        entries.push((table.unknowns, -1.0));
+                        let constant = -direction.dot(&tube.start) * tube.by_radius;
+                        table.row(constant, &entries);
+                        table.squares.push((table.unknowns, tube.centring));
+                        table.unknowns += 1;
+                    }
+                    table.cones.push(SupportedConeT::ZeroConeT(N));
+                }
                 let progress = table.unknowns;
                 if tube.capsule {
                     table.unknowns += 1;
