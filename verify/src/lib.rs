@@ -18,6 +18,7 @@
 pub(crate) mod path;
 pub(crate) mod pieces;
 mod poses;
+mod quality;
 mod report;
 mod set_points;
 mod violation;
@@ -31,6 +32,7 @@ pub use poses::{
     AxisPeaks, AxisQuantity, PoseCourse, PoseFoot, PoseJudge, PoseReport, PoseSetPointJudge,
     PoseViolation, keeps_axis_limits,
 };
+pub use quality::{FeedRipple, ModeSwing, Smoothness, USUAL_FREQUENCY};
 pub use report::{Peak, Place, Report};
 pub use set_points::spacing::{Gap, Gaps, Unseen};
 pub use set_points::{SetPointJudge, VerifyError, verify_set_points};

@@ -3,6 +3,7 @@
 //! Source: "did, with this result" is data, never an error. Not here: how it was found.
 
 use super::violation::Violation;
+use crate::quality::Smoothness;
 use crate::set_points::spacing::Gaps;
 
 /// How many violations of one kind a report quotes; all are counted.
@@ -85,6 +86,8 @@ pub struct Report<const N: usize> {
     pub acceleration_jump: Peak,
     /// Largest speed above the feedrate, mm/s; zero where the feedrate is kept.
     pub feedrate_overshoot: Peak,
+    /// How smooth the motion is; `None` for set-points.
+    pub smoothness: Option<Smoothness<N>>,
     /// How many violations there are.
     pub violations: u64,
     /// The first few violations of each kind, in the order found.
@@ -113,6 +116,7 @@ impl<const N: usize> Report<N> {
             velocity_jump: Peak::default(),
             acceleration_jump: Peak::default(),
             feedrate_overshoot: Peak::default(),
+            smoothness: None,
             violations: 0,
             examples: Vec::new(),
             gaps: Gaps::default(),

@@ -220,6 +220,39 @@ pub enum Violation {
         /// The move.
         place: Place,
     },
+    /// A mode of vibration swings on where the motion rests, although it was promised to rest.
+    #[error(
+        "axis {}: the mode at {frequency} Hz is left swinging by {left} mm at a rest, where {bound} mm are allowed, by {time:.3} s ({place})",
+        axis_name(*.axis)
+    )]
+    ModeSwings {
+        /// The axis, counted from 0.
+        axis: usize,
+        /// Frequency of the mode, Hz.
+        frequency: f64,
+        /// Its largest amplitude at a rest, mm.
+        left: f64,
+        /// What is allowed, mm.
+        bound: f64,
+        /// End of the motion.
+        time: f64,
+        /// The last move.
+        place: Place,
+    },
+    /// The motion goes beyond the side of a line that it was promised to keep.
+    #[error(
+        "the motion goes {distance} mm beyond the side that is kept, where {allowed} mm are allowed, by {time:.3} s ({place})"
+    )]
+    Overshoots {
+        /// The largest distance, mm.
+        distance: f64,
+        /// What is allowed, mm.
+        allowed: f64,
+        /// End of the motion.
+        time: f64,
+        /// The last move.
+        place: Place,
+    },
     /// A piece is not a motion at all: numbers that are not finite or larger than any machine.
     #[error("the motion is not a finite number at {time:.3} s ({place})")]
     NotFinite {
@@ -232,7 +265,7 @@ pub enum Violation {
 
 impl Violation {
     /// How many kinds there are.
-    pub(super) const KINDS: usize = 20;
+    pub(super) const KINDS: usize = 22;
 
     pub(super) fn kind(&self) -> usize {
         match self {
@@ -256,6 +289,8 @@ impl Violation {
             Self::MovesOutOfOrder { .. } => 17,
             Self::MoveSkipped { .. } => 18,
             Self::NotFinite { .. } => 19,
+            Self::ModeSwings { .. } => 20,
+            Self::Overshoots { .. } => 21,
         }
     }
 }

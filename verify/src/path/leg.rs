@@ -111,6 +111,14 @@ impl<const N: usize> Leg<N> {
         self.length <= SHORTEST_LENGTH && !self.dwell.is_some_and(|time| time > TIME_SLACK)
     }
 
+    /// Direction of a straight move; `None` on arcs and where there is no length.
+    pub(crate) fn direction(&self) -> Option<Vector<N>> {
+        match &self.shape {
+            Shape::Line { span, share } if *share > 0.0 => Some(span * share.sqrt()),
+            _ => None,
+        }
+    }
+
     /// Distance of a point from the move.
     pub(crate) fn distance(&self, point: &Vector<N>) -> f64 {
         match &self.shape {

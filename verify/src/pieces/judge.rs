@@ -9,14 +9,23 @@ use crate::path::leg::length_slack;
 use crate::path::route::Route;
 use crate::pieces::dynamics::{Stretch, judge_continuity, judge_limits, judge_speed, moving_axis};
 use crate::pieces::move_progress::Record;
+use crate::quality::Quality;
 use crate::report::{Place, Report};
 use crate::violation::Violation;
+use toolglide_kinematics::AxisModes;
 use toolglide_kinematics::Limits;
 use toolglide_kinematics::Move;
+use toolglide_kinematics::PathSide;
 use toolglide_kinematics::Sample;
 use toolglide_kinematics::ToolpathError;
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::{MoveRange, Piece};
+
+/// Room granted to an overshoot, mm: a nanometre.
+const OVERSHOOT_SLACK: f64 = 1e-6;
+
+/// What may be left of a mode that was promised to rest, as a share of what full acceleration bends at rest.
+const LEFT: f64 = 1e-2;
 
 /// Judges a motion piece by piece while it is planned.
 ///
@@ -51,6 +60,12 @@ pub struct Judge<const N: usize> {
     claimed: Option<MoveRange>,
     /// Largest distance of the last piece from the path and share of the tolerance, where each piece is measured.
     measured: Option<[f64; 2]>,
+    quality: Quality<N>,
+    /// What may be left of a mode at a rest, as a share of what full acceleration bends; none where nothing was
+    /// promised.
+    silence: Option<f64>,
+    /// How far the motion may go beyond the side that is kept, mm.
+    overshoot: f64,
 }
 
 impl<const N: usize> Judge<N> {
@@ -68,6 +83,9 @@ impl<const N: usize> Judge<N> {
             compensation: 0.0,
             claimed: None,
             measured: None,
+            quality: Quality::new(&limits),
+            silence: None,
+            overshoot: f64::INFINITY,
         }
     }
 
@@ -84,6 +102,29 @@ impl<const N: usize> Judge<N> {
     #[must_use]
     pub fn last_deviation(&self) -> Option<[f64; 2]> {
         self.measured
+    }
+
+    /// The same, holding the motion to a side of straight lines, with so much overshoot allowed, mm.
+    #[must_use]
+    pub fn with_side(mut self, side: PathSide, overshoot: f64) -> Self {
+        self.quality.set_side(side);
+        self.overshoot = overshoot;
+        self
+    }
+
+    /// The same, measuring acceleration above another frequency, Hz.
+    #[must_use]
+    pub fn with_high_pass(mut self, frequency: f64) -> Self {
+        self.quality.set_frequency(frequency);
+        self
+    }
+
+    /// The same, following modes of vibration; `silent` says that they must rest wherever the motion rests.
+    #[must_use]
+    pub fn with_modes(mut self, modes: &AxisModes, silent: bool) -> Self {
+        self.quality.set_modes(modes, &self.limits);
+        self.silence = silent.then_some(LEFT);
+        self
     }
 
     /// Takes the next move of the path.
@@ -139,6 +180,13 @@ impl<const N: usize> Judge<N> {
                 (first, last),
             );
         }
+        let rests = stretch.rests(&self.limits);
+        self.quality
+            .observe(&self.route, &stretch, (first, last), rests);
+        let end = self.time + stretch.duration;
+        if moving_axis(&stretch.end, &self.limits, end).is_none() {
+            self.quality.rest();
+        }
         self.advance(stretch.duration);
         self.state = Sample {
             position: stretch.stated_end,
@@ -181,10 +229,41 @@ impl<const N: usize> Judge<N> {
         if let Some(axis) = moving_axis(&self.state, &self.limits, time) {
             self.report.add(Violation::EndsMoving { axis, time, place });
         }
+        self.report_smoothness(place);
         self.report.cycle_time = time;
         self.report.path_length = self.route.length;
         self.report.moves = moves;
         self.report
+    }
+
+    /// Reports how smooth the motion was, and modes that swing although they were promised to rest.
+    fn report_smoothness(&mut self, place: Place) {
+        let quality = std::mem::replace(&mut self.quality, Quality::new(&self.limits));
+        let distance = quality.beyond();
+        if distance > self.overshoot + OVERSHOOT_SLACK {
+            self.report.add(Violation::Overshoots {
+                distance,
+                allowed: self.overshoot,
+                time: self.time,
+                place,
+            });
+        }
+        let smoothness = quality.finish();
+        for swing in &smoothness.modes {
+            if let Some(share) = self.silence
+                && swing.left > share * swing.bend
+            {
+                self.report.add(Violation::ModeSwings {
+                    axis: swing.axis,
+                    frequency: swing.mode.frequency(),
+                    left: swing.left,
+                    bound: share * swing.bend,
+                    time: self.time,
+                    place,
+                });
+            }
+        }
+        self.report.smoothness = Some(smoothness);
     }
 
     /// The moves to judge a piece by, once its claim has been checked; moves behind are closed.

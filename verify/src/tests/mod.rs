@@ -9,3 +9,4 @@ mod limits;
 mod order;
 mod points;
 mod search;
+mod smoothness;
