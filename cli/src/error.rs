@@ -139,6 +139,14 @@ pub enum CliError {
         /// What is wrong.
         reason: String,
     },
+    /// A mode of vibration is refused.
+    #[error("{asked}: {reason}")]
+    Mode {
+        /// Who named it: an option, or a field of the machine file.
+        asked: String,
+        /// What is wrong.
+        reason: String,
+    },
     /// The summary cannot be written as JSON.
     #[error("the summary cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -153,6 +161,14 @@ impl CliError {
         move |reason| Self::Filters {
             asked: asked.to_owned(),
             reason,
+        }
+    }
+
+    /// A mode of vibration that is refused, with who named it.
+    pub(crate) fn mode<E: std::fmt::Display>(asked: &str) -> impl Fn(E) -> Self {
+        move |reason| Self::Mode {
+            asked: asked.to_owned(),
+            reason: reason.to_string(),
         }
     }
 

@@ -3,15 +3,17 @@
 //! Everything else speaks to [`MotionPlanner`].
 
 use crate::error::CliError;
-use crate::input::args::TuningArgs;
+use crate::input::args::{KeptSide, TuningArgs};
 use crate::input::filters::{asked, chain};
 use crate::input::setup::Setup;
+use crate::input::silence::{all_modes, silent_modes};
 use toolglide_baselines::{BezierSmoothing, LocalOverlap};
 use toolglide_fir::{FilterChain, FirInterpolation};
-use toolglide_kinematics::{Limits, MotionPlanner, Vector};
-use toolglide_optimal::{Effort, TimeOptimal};
+use toolglide_kinematics::{AxisModes, Limits, MotionPlanner, PathSide, Vector};
+use toolglide_optimal::{Effort, Smoothing, TimeOptimal};
 use toolglide_reference::ReferencePlanner;
 use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
+use toolglide_verify::Judge;
 
 /// A method of planning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,6 +115,18 @@ pub(crate) struct Tuning {
     pub(crate) filters_asked: String,
     /// How much planning the method optimal may do.
     pub(crate) effort: Effort,
+    /// How much slower than the fastest motion of the method optimal a smoother one may be.
+    pub(crate) smoothing: Smoothing,
+    /// Modes that the method optimal leaves at rest, and who named them.
+    pub(crate) modes: AxisModes,
+    pub(crate) modes_asked: String,
+    /// All modes of the machine, which the judge follows.
+    pub(crate) all_modes: AxisModes,
+    /// Frequency above which acceleration is measured, Hz; 0 for the usual one.
+    pub(crate) high_pass: f64,
+    /// On which side of straight lines the method optimal stays, and how far it may go on the other, mm.
+    pub(crate) side: PathSide,
+    pub(crate) overshoot: f64,
 }
 
 impl Tuning {
@@ -122,7 +136,45 @@ impl Tuning {
             filters: chain(args, setup)?,
             filters_asked: asked(args, setup),
             effort: Effort::new(args.effort).unwrap_or_default(),
+            smoothing: Smoothing::new(args.smooth / 100.0).unwrap_or_default(),
+            modes: silent_modes(args, setup)?,
+            modes_asked: setup.modes_asked.clone(),
+            all_modes: all_modes(setup)?,
+            high_pass: args.above,
+            side: args.side.map_or(PathSide::Both, kept_side),
+            overshoot: args.overshoot,
         })
+    }
+}
+
+fn kept_side(side: KeptSide) -> PathSide {
+    match side {
+        KeptSide::Inside => PathSide::Inside,
+        KeptSide::Left => PathSide::Left,
+        KeptSide::Right => PathSide::Right,
+    }
+}
+
+impl Tuning {
+    /// The judge of a method: it follows the modes of the machine, and holds the method to what it promises of them.
+    pub(crate) fn judge<const N: usize>(
+        &self,
+        method: &str,
+        start: Vector<N>,
+        limits: Limits<N>,
+    ) -> Judge<N> {
+        let silent = method == OPTIMAL && !self.modes.is_empty();
+        Judge::new(start, limits)
+            .with_high_pass(self.high_pass)
+            .with_modes(&self.all_modes, silent)
+            .with_side(
+                if method == OPTIMAL {
+                    self.side
+                } else {
+                    PathSide::Both
+                },
+                self.overshoot,
+            )
     }
 }
 
@@ -147,7 +199,12 @@ pub(crate) fn planner<const N: usize>(
         return Ok(Box::new(FirInterpolation::new(start, &settings)));
     }
     if method == OPTIMAL {
-        let settings = toolglide_optimal::Settings::new(limits).with_effort(tuning.effort);
+        let settings = toolglide_optimal::Settings::new(limits)
+            .with_effort(tuning.effort)
+            .with_smoothing(tuning.smoothing)
+            .with_side(tuning.side, tuning.overshoot)
+            .with_modes(tuning.modes)
+            .map_err(CliError::mode(&tuning.modes_asked))?;
         return Ok(Box::new(TimeOptimal::new(start, &settings)));
     }
     if method == BEZIER {

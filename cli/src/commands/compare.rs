@@ -19,7 +19,6 @@ use crate::pipeline::Lane;
 use crate::plot::{Caption, Feeds};
 use std::io::Write;
 use toolglide_kinematics::Move;
-use toolglide_verify::Judge;
 
 /// Runs the command.
 pub(crate) fn compare(
@@ -51,8 +50,8 @@ where
         .is_some()
         .then(|| Recording::new(start, limits, chosen.len()));
     let measured = page.is_some();
-    let judge = || {
-        let judge = Judge::new(start, limits);
+    let judge = |method: &str| {
+        let judge = tuning.judge(method, start, limits);
         if measured {
             judge.measuring_each()
         } else {
@@ -60,7 +59,7 @@ where
         }
     };
     let lane = |method: &str| {
-        planner(method, start, limits, &tuning).map(|planner| Lane::new(planner, judge()))
+        planner(method, start, limits, &tuning).map(|planner| Lane::new(planner, judge(method)))
     };
     let mut lanes = chosen
         .iter()
@@ -105,7 +104,7 @@ where
     let rows = chosen
         .iter()
         .zip(&results)
-        .map(|(method, (report, time))| MethodRow::of(method, report, *time, blocks, stop))
+        .map(|(method, (report, time))| MethodRow::of(method, report, *time, blocks, stop, setup))
         .collect();
     warn(moves.program.program(), err);
     let comparison = Comparison::new(&name, setup, blocks, rows);

@@ -21,7 +21,6 @@ use std::io::{BufRead, Write};
 use std::path::Path;
 use toolglide_kinematics::Move;
 use toolglide_program::{Program, Settings};
-use toolglide_verify::Judge;
 
 /// Runs the command.
 pub(crate) fn plan(
@@ -101,6 +100,14 @@ where
     let drawn = files.drawing.is_some();
     let recorded = files.page.is_some();
     let destination = files.rows.destination(out);
+    let mut judge = tuning.judge(method, start, limits);
+    if args.round_to_period {
+        // Other durations set the modes swinging.
+        judge = judge.with_modes(&tuning.all_modes, false);
+    }
+    if recorded {
+        judge = judge.measuring_each();
+    }
     let mut planner = planner(method, start, limits, &tuning)?;
     if args.round_to_period {
         planner = Box::new(RoundToPeriod::new(planner, setup.period));
@@ -108,11 +115,7 @@ where
     let outcome = Pipeline {
         moves: moves(&args.job, setup, source)?,
         planner,
-        judge: if recorded {
-            Judge::new(start, limits).measuring_each()
-        } else {
-            Judge::new(start, limits)
-        },
+        judge,
         set_points: SetPoints::new(setup.period, &setup.axes, start, destination),
         plot: drawn.then(|| Plot::new(start, limits, setup.letters())),
         recording: recorded.then(|| Recording::new(start, limits, 1)),

@@ -21,8 +21,7 @@ use crate::plot::{Caption, Spectra, Spectrum};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
-use toolglide_fir::{Mode, Resonator};
-use toolglide_kinematics::{Move, Piece, Vector};
+use toolglide_kinematics::{Mode, Move, Piece, Resonator, Vector};
 use toolglide_simulation::{ModeOutcome, SimulationError, SimulationSettings, Simulator};
 use toolglide_verify::Judge;
 
@@ -68,7 +67,7 @@ impl Oscillators {
         let spectrum = frequencies
             .iter()
             .map(|&frequency| {
-                Resonator::at_frequency(frequency).map_err(CliError::filters("spectrum"))
+                Resonator::at_frequency(frequency).map_err(CliError::mode("spectrum"))
             })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self {

@@ -10,7 +10,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use toolglide_machines::ModeConfig;
-use toolglide_optimal::Effort;
+use toolglide_optimal::{Effort, Smoothing};
+use toolglide_verify::USUAL_FREQUENCY;
 
 /// Names of the languages of programs.
 const DIALECTS: [&str; 5] = ["ngc", "fanuc", "840d", "cl", "printer"];
@@ -127,6 +128,67 @@ pub(crate) struct TuningArgs {
     #[arg(long, value_name = "1-9", default_value_t = Effort::DEFAULT.level(),
         value_parser = clap::value_parser!(u8).range(1..=9))]
     pub(crate) effort: u8,
+    /// How much slower than the fastest motion the method optimal may be to be smoother, percent of the time; 0 for
+    /// the fastest.
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * Smoothing::DEFAULT.share(),
+        value_parser = smoothing, allow_hyphen_values = true)]
+    pub(crate) smooth: f64,
+    /// Acceleration above this frequency is measured, Hz.
+    #[arg(long, value_name = "HZ", default_value_t = USUAL_FREQUENCY, value_parser = positive,
+        allow_hyphen_values = true)]
+    pub(crate) above: f64,
+    /// On which side of straight lines the method optimal stays: at corners on the inner one, or left or right of the
+    /// line in the sense of the motion.
+    #[arg(long, value_name = "SIDE")]
+    pub(crate) side: Option<KeptSide>,
+    /// How far it may go on the other side, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, value_parser = overshoot, allow_hyphen_values = true,
+        requires = "side")]
+    pub(crate) overshoot: f64,
+    /// Whether the method optimal leaves the modes of vibration of the machine at rest wherever it rests [default: on
+    /// where the machine file has modes].
+    #[arg(long, value_name = "on|off", num_args = 0..=1, default_missing_value = "on")]
+    pub(crate) silent: Option<Silent>,
+}
+
+/// Whether modes of vibration must rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Silent {
+    /// Wherever the motion rests.
+    On,
+    /// They may swing.
+    Off,
+}
+
+/// Sides of lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum KeptSide {
+    /// The inner side of every corner.
+    Inside,
+    /// Left of every line.
+    Left,
+    /// Right of every line.
+    Right,
+}
+
+/// An overshoot in mm.
+fn overshoot(text: &str) -> Result<f64, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|length| (0.0..=LONGEST_OVERSHOOT).contains(length))
+        .ok_or_else(|| format!("it must be a length from 0 to {LONGEST_OVERSHOOT} mm"))
+}
+
+/// Longest overshoot that is taken, mm.
+const LONGEST_OVERSHOOT: f64 = 100.0;
+
+/// A share of smoothing in percent.
+fn smoothing(text: &str) -> Result<f64, String> {
+    let most = 100.0 * Smoothing::MAX;
+    text.parse::<f64>()
+        .ok()
+        .filter(|percent| Smoothing::new(percent / 100.0).is_some())
+        .ok_or_else(|| format!("it must be a number from 0 to {most} percent"))
 }
 
 /// What tool poses need beside a program of straight axes.

@@ -6,7 +6,8 @@
 use crate::error::CliError;
 use crate::input::args::TuningArgs;
 use crate::input::setup::Setup;
-use toolglide_fir::{FilterChain, Mode};
+use toolglide_fir::FilterChain;
+use toolglide_kinematics::Mode;
 
 /// The chain of a run; `None` where the planner chooses.
 pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterChain>, CliError> {
@@ -25,7 +26,7 @@ pub(crate) fn chain(args: &TuningArgs, setup: &Setup) -> Result<Option<FilterCha
     // Axes that vibrate alike need one filter.
     let mut modes = Vec::<Mode>::new();
     for mode in &setup.modes {
-        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(&refuse)?;
+        let mode = Mode::new(mode.frequency_hz, mode.damping).map_err(CliError::mode(&asked))?;
         if !modes.contains(&mode) {
             modes.push(mode);
         }

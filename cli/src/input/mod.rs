@@ -7,6 +7,7 @@ pub(crate) mod filters;
 pub(crate) mod recording;
 pub(crate) mod setup;
 pub(crate) mod signals;
+pub(crate) mod silence;
 pub(crate) mod source;
 pub(crate) mod travel;
 pub(crate) mod values;

@@ -4,6 +4,7 @@
 
 use crate::input::setup::Setup;
 use crate::output::report::{Shown, quoted};
+use crate::output::smoothness::Measures;
 use crate::output::summary::worst_first;
 use serde::Serialize;
 use std::fmt::Write;
@@ -32,6 +33,8 @@ pub(crate) struct MethodRow {
     peak_jerk: Vec<f64>,
     max_deviation_mm: f64,
     max_corner_error_mm: f64,
+    #[serde(flatten)]
+    smoothness: Measures,
     violations: u64,
     planning_us_per_block: f64,
     #[serde(skip)]
@@ -47,6 +50,7 @@ impl MethodRow {
         planning_time: Duration,
         blocks: u64,
         stop: f64,
+        setup: &Setup,
     ) -> Self {
         let values = |peaks: &[Peak; N]| peaks.iter().map(|peak| peak.value).collect();
         Self {
@@ -62,6 +66,7 @@ impl MethodRow {
             peak_jerk: values(&report.peak_jerk),
             max_deviation_mm: report.deviation.value,
             max_corner_error_mm: report.corner_error.value,
+            smoothness: Measures::of(report.smoothness.as_ref(), setup),
             violations: report.violations,
             planning_us_per_block: 1e6 * planning_time.as_secs_f64() / blocks.max(1) as f64,
             worst: worst_first(&report.examples),
@@ -152,6 +157,12 @@ impl Shown for Comparison {
             &self.jerk_limit,
             |row| &row.peak_jerk,
         );
+        text.push_str("\nhow smooth\n");
+        for row in &self.methods {
+            for line in row.smoothness.lines().lines() {
+                let _ = writeln!(text, "{:<18} {}", row.method, line);
+            }
+        }
         text
     }
 
@@ -186,6 +197,7 @@ mod tests {
             peak_jerk: vec![30.0],
             max_deviation_mm: 0.0,
             max_corner_error_mm: 0.0,
+            smoothness: Measures::default(),
             violations,
             planning_us_per_block: 1.0,
             worst: worst.iter().map(|&wrong| wrong.to_owned()).collect(),

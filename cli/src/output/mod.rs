@@ -11,4 +11,5 @@ pub(crate) mod program_report;
 pub(crate) mod progress;
 pub(crate) mod report;
 pub(crate) mod score_report;
+pub(crate) mod smoothness;
 pub(crate) mod summary;

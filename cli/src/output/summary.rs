@@ -4,6 +4,7 @@
 
 use crate::input::setup::Setup;
 use crate::output::report::{Shown, is_zero, quoted, verdict};
+use crate::output::smoothness::Measures;
 use serde::Serialize;
 use std::fmt::Write;
 use toolglide_kinematics::{AxisKind, WindowTally};
@@ -43,6 +44,8 @@ pub(crate) struct Summary {
     pub(crate) max_corner_error_mm: f64,
     pub(crate) max_corner_error_share: f64,
     pub(crate) feedrate_overshoot_mm_s: f64,
+    #[serde(flatten)]
+    pub(crate) smoothness: Measures,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) planning_time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -140,6 +143,7 @@ impl Summary {
             max_corner_error_mm: report.corner_error.value,
             max_corner_error_share: report.corner_ratio.value,
             feedrate_overshoot_mm_s: report.feedrate_overshoot.value,
+            smoothness: Measures::of(report.smoothness.as_ref(), setup),
             planning_time_s: None,
             windows: None,
             violations: report.violations,
@@ -228,6 +232,7 @@ impl Shown for Summary {
             corner_share = 100.0 * self.max_corner_error_share,
         );
         self.axes_table(&mut text);
+        text.push_str(self.smoothness.lines());
         if let Some(time) = self.planning_time_s {
             let _ = writeln!(text, "planned in   {time:.3} s");
         }
