@@ -109,11 +109,11 @@ fn longest_period<const N: usize>(limits: &Limits<N>, effort: Effort) -> f64 {
     let (acceleration, jerk) = weakest(limits);
     let build_up = acceleration / jerk;
     // Two periods fit into a window.
-    0.5 * MAX_STEPS_OF_WINDOW * effort.fineness().0 * build_up
+    0.9 * MAX_STEPS_OF_WINDOW * effort.fineness().0 * build_up
 }
 
 /// Intervals of the longest window.
-const MAX_STEPS_OF_WINDOW: f64 = 560.0;
+const MAX_STEPS_OF_WINDOW: f64 = 320.0;
 
 /// Motions whose durations differ by less than this many times the share of smoothing are taken by their jerk.
 const INDIFFERENCE: f64 = 1.5;

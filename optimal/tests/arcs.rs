@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
-use toolglide_kinematics::{Arc, Feedrate, Limits, Move, Tolerance, Toolpath, Trajectory, Vector};
+use toolglide_kinematics::{Arc, Feedrate, Limits, Move, Tolerance, Toolpath, Vector};
 use toolglide_optimal::{Settings, plan};
 use toolglide_verify::verify;
 

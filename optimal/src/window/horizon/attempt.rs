@@ -67,6 +67,9 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 return None;
             }
             count = (count / 2).max(fewest);
+            if !self.swings.is_empty() {
+                self.cut_finely_enough(count);
+            }
         }
     }
 

@@ -51,6 +51,9 @@ pub(crate) const MAX_SPANS: usize = 100;
 /// Most intervals of a window: rounding grows with the sixth power of their number.
 const MAX_STEPS: usize = 560;
 
+/// The same with modes of vibration, whose problems cost more.
+const MAX_SILENT_STEPS: usize = 320;
+
 /// Room for the intervals of a window, whose last span may reach beyond the most.
 pub(crate) const ROOM: usize = MAX_STEPS + crate::path::spans::MAX_STEPS;
 
@@ -302,6 +305,11 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// How many spans take some times to stop and `more` seconds, and whether there are as many.
     fn reach(&mut self, stops: f64, more: f64, fewest: usize) -> (usize, bool) {
         let (mut time, mut stop_time, mut nodes) = (0.0, 0.0_f64, 0);
+        let most = if self.swings.is_empty() {
+            MAX_STEPS
+        } else {
+            MAX_SILENT_STEPS
+        };
         let free = self.free.times.iter().zip(&self.free.steady);
         for (index, (span, (duration, steady))) in self.spans.iter().zip(free).enumerate() {
             if index >= fewest && time >= stops * stop_time + more {
@@ -312,7 +320,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             } else {
                 span.steps_for(*duration, *steady)
             };
-            if index > 0 && nodes + steps > MAX_STEPS || index >= MAX_SPANS {
+            if index > 0 && nodes + steps > most || index >= MAX_SPANS {
                 return (index, true);
             }
             nodes += steps;
