@@ -17,8 +17,7 @@ use crate::output::summary::worst_first;
 use crate::pipeline::Lane;
 use crate::plot::SimulationTrace;
 use std::io::Write;
-use toolglide_fir::{Mode, Resonator};
-use toolglide_kinematics::{Move, Piece};
+use toolglide_kinematics::{Mode, Move, Piece, Resonator};
 use toolglide_simulation::{Instant, Outcome, SimulationError, SimulationSettings, Simulator};
 use toolglide_verify::{Judge, Report};
 
