@@ -223,7 +223,7 @@ fn resonators(case: &Case) -> Result<Vec<(usize, Resonator)>, CliError> {
     for (index, axis) in case.drives.axes.iter().enumerate() {
         for mode in axis.model.modes() {
             let mode = Mode::new(mode.frequency, mode.damping)
-                .map_err(CliError::filters(&case.setup.modes_asked))?;
+                .map_err(CliError::mode(&case.setup.modes_asked))?;
             found.push((index, Resonator::new(&mode)));
         }
     }
