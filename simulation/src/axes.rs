@@ -202,7 +202,7 @@ impl Axes {
         let mut out = false;
         for ((axis, &set_point), &shaped) in self.axes.iter_mut().zip(set_points).zip(shaped) {
             let error = set_point - axis.drive.position();
-            if !(error.abs() < LOST) {
+            if error.is_nan() || error.abs() >= LOST {
                 return Err(if set_point.is_finite() {
                     SimulationError::Diverged {
                         time,

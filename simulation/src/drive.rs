@@ -165,17 +165,17 @@ impl Drive {
         let length = self.model.settings.servo_period / count as f64;
         for step in &self.model.substeps {
             let mut next = [0.0; MAX_STATES];
-            for i in 0..n {
+            for (i, next) in next[..n].iter_mut().enumerate() {
                 let mut sum = step.new[i] * new + step.old[i] * old;
-                for j in 0..n {
-                    sum += step.a[i][j] * self.state[j];
+                for (weight, state) in step.a[i][..n].iter().zip(&self.state) {
+                    sum += weight * state;
                 }
-                next[i] = sum;
+                *next = sum;
             }
             let gain = -step.friction[1];
             self.friction = self.slip.step(next[1], gain, self.state[1], length);
-            for i in 0..n {
-                next[i] += step.friction[i] * self.friction;
+            for (next, effect) in next[..n].iter_mut().zip(&step.friction) {
+                *next += effect * self.friction;
             }
             self.state = next;
         }

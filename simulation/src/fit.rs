@@ -266,7 +266,7 @@ impl Problem<'_> {
                     forces.push(self.force_weight * (drive.command() - recorded[row]));
                 }
             }
-            if !(drive.position().abs() < 1e6) {
+            if drive.position().is_nan() || drive.position().abs() >= 1e6 {
                 return None;
             }
         }
@@ -341,7 +341,7 @@ pub fn fit(recording: &Recording, start: &DriveSettings) -> Result<Fit, FitError
             .max_by(|one, other| one.1.total_cmp(other.1));
         let condition = condition(&jacobian);
         if let Some((index, deviation)) = worst
-            && !(*deviation <= UNTOLD)
+            && (deviation.is_nan() || *deviation > UNTOLD)
         {
             // What is not told goes back to where it began, and the rest is fitted again.
             held.push(fitted.remove(index).0);

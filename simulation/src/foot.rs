@@ -11,10 +11,11 @@ use toolglide_kinematics::Vector;
 #[derive(Clone, Debug)]
 pub(crate) struct Foot<const N: usize> {
     points: Ring<Vector<N>>,
+    /// Length of the planned path up to each point.
+    lengths: Ring<f64>,
+    length: f64,
     foot: u64,
     lag: u64,
-    /// Longest step so far.
-    longest: f64,
 }
 
 impl<const N: usize> Foot<N> {
@@ -23,9 +24,10 @@ impl<const N: usize> Foot<N> {
         let kept = usize::try_from(lag + ahead + 4).unwrap_or(usize::MAX);
         Self {
             points: Ring::new(kept, Vector::zeros()),
+            lengths: Ring::new(kept, 0.0),
+            length: 0.0,
             foot: 0,
             lag,
-            longest: 0.0,
         }
     }
 
@@ -33,9 +35,9 @@ impl<const N: usize> Foot<N> {
     #[inline]
     pub(crate) fn give(&mut self, planned: Vector<N>) {
         if self.points.count() > 0 {
-            let step = (planned - self.points.get(self.points.count() - 1)).norm();
-            self.longest = self.longest.max(step);
+            self.length += (planned - self.points.get(self.points.count() - 1)).norm();
         }
+        self.lengths.push(self.length);
         self.points.push(planned);
     }
 
@@ -47,11 +49,6 @@ impl<const N: usize> Foot<N> {
 
     /// Offset of the actual point at set-point `now` from its foot, which is at most `lead` set-points ahead.
     #[inline]
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a skip is bounded before it is cast"
-    )]
     pub(crate) fn offset(&mut self, now: u64, lead: u64, actual: &Vector<N>) -> Vector<N> {
         let newest = (now + lead).min(self.points.count().saturating_sub(1));
         let oldest = now.saturating_sub(self.lag).min(newest);
@@ -59,20 +56,40 @@ impl<const N: usize> Foot<N> {
         let mut at = self.foot.clamp(oldest, newest);
         let mut best = self.part(at, actual);
         let mut least = best.norm();
-        // A step that is farther than the best by d cannot be followed by a better one before the plan has gone d.
         let mut next = oldest;
-        let pace = 1.0 / self.longest.max(1e-300);
         while next <= newest {
             let one = self.part(next, actual);
             let distance = one.norm();
             if distance < least {
                 (best, least, at) = (one, distance, next);
             }
-            let skip = ((distance - least) * pace).min(1e9) as u64;
-            next += skip.max(1);
+            // What is farther than the best by d cannot be followed by anything better before the plan has gone d.
+            next = self.first_at(next, newest, distance - least);
         }
         self.foot = at;
         best
+    }
+
+    /// The first step after one whose end is at least so far along the path from the start of that one.
+    #[inline]
+    fn first_at(&self, from: u64, newest: u64, ahead: f64) -> u64 {
+        let target = self.lengths.get(from) + ahead;
+        let (mut low, mut stride) = (from + 1, 1);
+        while low + stride <= newest && self.lengths.get(low + stride) <= target {
+            low += stride;
+            stride *= 2;
+        }
+        while stride > 1 {
+            stride /= 2;
+            if low + stride <= newest && self.lengths.get(low + stride) <= target {
+                low += stride;
+            }
+        }
+        if low < newest && self.lengths.get(low + 1) <= target {
+            low + 1
+        } else {
+            low
+        }
     }
 
     /// Offset from the nearest point of the step from a set-point to the next.
@@ -96,24 +113,19 @@ mod tests {
     use super::*;
 
     /// A path of points on a figure, walked with an actual point that is `late` set-points behind and `aside` off.
-    fn largest(
-        figure: impl Fn(f64) -> Vector<2>,
-        late: usize,
-        aside: Vector<2>,
-        steps: usize,
-    ) -> f64 {
+    fn largest(figure: impl Fn(f64) -> Vector<2>, late: u64, aside: Vector<2>, steps: u64) -> f64 {
         let (lag, lead) = (400, 100);
         let mut foot = Foot::<2>::new(lag, lead);
         #[allow(clippy::cast_precision_loss, reason = "a few thousand steps")]
-        let at = |k: usize| figure(k as f64);
+        let at = |k: u64| figure(k as f64);
         for k in 0..lead {
-            foot.give(at(k as usize));
+            foot.give(at(k));
         }
         let mut most = 0.0_f64;
         for k in 0..steps {
-            foot.give(at(k + lead as usize));
+            foot.give(at(k + lead));
             let actual = at(k.saturating_sub(late)) + aside;
-            most = most.max(foot.offset(k as u64, lead, &actual).norm());
+            most = most.max(foot.offset(k, lead, &actual).norm());
         }
         most
     }

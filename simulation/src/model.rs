@@ -128,7 +128,7 @@ impl DriveModel {
             },
         };
         let radius = model.radius();
-        if !(radius < 1.0) {
+        if radius.is_nan() || radius >= 1.0 {
             return Err(model.unstable(radius));
         }
         model.report = LoopReport {

@@ -46,7 +46,8 @@ impl<const A: usize> Refiner<A> {
     ) -> Result<Self, DriveError> {
         let ratio = period / servo_period;
         let whole = ratio.round();
-        if !(whole >= 1.0 && whole <= MAX_RATIO && (ratio - whole).abs() <= WHOLE * whole) {
+        let divides = (ratio - whole).abs() <= WHOLE * whole;
+        if !((1.0..=MAX_RATIO).contains(&whole) && divides) {
             return Err(DriveError::new(
                 "servo_period_s",
                 servo_period,

@@ -128,7 +128,7 @@ impl<const N: usize> Course<N> {
             // No point nearer than the best comes before the path has gone the difference.
             let reach = self.end_of(at) + (distance - least);
             at += 1;
-            while at < last && self.end_of(at) < reach {
+            while at < last && self.end_of(at) <= reach {
                 at += 1;
             }
         }

@@ -112,11 +112,18 @@ fn case(
         label = format!("{label}, {name} {} {unit}", list.join(" and "));
     }
     let setup = Setup::new(&job, args.period)?;
+    let drives = Drives::of(&setup, &changes)?;
+    // Filters on the modes are for methods that filter; others may have modes that set-points do not resolve.
+    let mut filtered = Setup::new(&job, args.period)?;
+    if !method.starts_with("fir") {
+        filtered.modes.clear();
+    }
+    let tuning = Tuning::of(&tuning, &filtered)?;
     Ok(Case {
         label,
         method: method.to_owned(),
-        tuning: Tuning::of(&tuning, &setup)?,
-        drives: Drives::of(&setup, &changes)?,
+        tuning,
+        drives,
         job,
         setup,
     })
