@@ -8,6 +8,7 @@ use crate::input::filters::{asked, chain};
 use crate::input::setup::Setup;
 use crate::input::silence::{all_modes, silent_modes};
 use toolglide_baselines::{BezierSmoothing, LocalOverlap};
+use toolglide_fastest::Fastest;
 use toolglide_fir::{FilterChain, FirInterpolation};
 use toolglide_kinematics::{AxisModes, Limits, MotionPlanner, PathSide, Vector};
 use toolglide_optimal::{Effort, Smoothing, TimeOptimal};
@@ -28,7 +29,7 @@ pub struct MethodName {
 pub const METHODS: &[MethodName] = &[
     MethodName {
         name: "kcs",
-        summary: "the fastest it finds of everything: corners turned, stopped at, many fine ones superposed",
+        summary: "the fastest it finds of everything: corners turned, stopped at, many fine ones superposed, pulses filtered",
     },
     MethodName {
         name: OPTIMAL,
@@ -185,6 +186,9 @@ pub(crate) fn planner<const N: usize>(
     limits: Limits<N>,
     tuning: &Tuning,
 ) -> Result<Box<dyn MotionPlanner<N>>, CliError> {
+    if method == Method::Kcs.name() {
+        return Ok(Box::new(Fastest::new(start, limits)));
+    }
     if let Some(method) = Method::find(method) {
         let settings = Settings::new(limits).with_method(method);
         return Ok(Box::new(KinematicSmoothing::new(start, &settings)));

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
+use toolglide_fastest::Fastest;
 use toolglide_fir::FirInterpolation;
 use toolglide_kinematics::{Limits, MotionPlanner, Trajectory};
 use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
@@ -141,6 +142,19 @@ fn filtered_pulses_of_long_moves_are_handed_out_after_three_moves() {
         let course = corners(50.0, turn, 300);
         let settings = toolglide_fir::Settings::new(limits());
         let mut planner = FirInterpolation::new([0.0; 2].into(), &settings);
+        let (first, held) = latency(&mut planner, &course);
+        assert!(
+            first <= 3 && held <= 3,
+            "turns of {turn} degrees: {first} moves before the first piece, then {held} held"
+        );
+    }
+}
+
+#[test]
+fn the_fastest_of_all_is_handed_out_after_three_long_moves() {
+    for turn in [90.0, 60.0, 20.0, 5.0] {
+        let course = corners(50.0, turn, 300);
+        let mut planner = Fastest::new([0.0; 2].into(), limits());
         let (first, held) = latency(&mut planner, &course);
         assert!(
             first <= 3 && held <= 3,

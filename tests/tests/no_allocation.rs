@@ -183,6 +183,16 @@ fn no_machine_allocates_to_find_its_axes() {
 }
 
 #[test]
+fn comparing_planners_allocates_nothing() {
+    let path = mixed(20);
+    let mut planner = toolglide_fastest::Fastest::new(path.start(), limits());
+    let mut pieces = 0_u64;
+    let counted = measure(|| pieces = count_pieces(&mut planner, &path));
+    assert!(pieces > 1_000, "{pieces} pieces");
+    assert_eq!(counted.count_total, 0, "{counted:?}");
+}
+
+#[test]
 fn planning_filtered_pulses_and_filtering_ticks_allocates_nothing() {
     let path = mixed(20);
     let chain = toolglide_fir::FilterChain::with_time_constants(&[0.05, 0.03]).unwrap();

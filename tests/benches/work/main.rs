@@ -13,6 +13,7 @@ use cpu_time::ThreadTime;
 use programs::{Program, programs};
 use std::hint::black_box;
 use std::time::Duration;
+use toolglide_fastest::Fastest;
 use toolglide_fir::FirInterpolation;
 use toolglide_kinematics::{Limits, MotionPlanner, Move, Path, Vector};
 use toolglide_optimal::{Effort, TimeOptimal};
@@ -20,6 +21,9 @@ use toolglide_smoothing::{KinematicSmoothing, Method};
 
 /// Methods that are measured unless others are asked for.
 const DEFAULT_METHODS: [&str; 2] = ["kcs", "fir"];
+
+/// Kinematic corner smoothing by itself, without the methods that `kcs` compares it with.
+const SMOOTHING: &str = "smoothing";
 
 /// Rounds over which the least time of each push counts, which leaves out what else the computer did.
 const ROUNDS: usize = 2;
@@ -54,7 +58,7 @@ fn main() {
         .map(Method::name)
         .into_iter()
         .chain(toolglide_fir::Method::ALL.map(toolglide_fir::Method::name))
-        .chain(["optimal"])
+        .chain(["optimal", SMOOTHING])
         .collect();
     let (mut methods, names): (Vec<&str>, Vec<&str>) = words
         .iter()
@@ -171,6 +175,14 @@ fn measure(moves: &[Move<3>], method: &str, limits: Limits<3>) -> Cost {
 /// The planner of a method.
 fn planner(method: &str, limits: Limits<3>) -> Box<dyn MotionPlanner<3>> {
     let start = Vector::zeros();
+    if method == Method::Kcs.name() {
+        return Box::new(Fastest::new(start, limits));
+    }
+    let method = if method == SMOOTHING {
+        Method::Kcs.name()
+    } else {
+        method
+    };
     if let Some(method) = Method::find(method) {
         let settings = toolglide_smoothing::Settings::new(limits).with_method(method);
         return Box::new(KinematicSmoothing::new(start, &settings));
