@@ -11,6 +11,7 @@ mod filter;
 mod lookahead;
 mod planner;
 mod pulse;
+mod pulse_corner;
 mod segment_merger;
 mod settings;
 mod sweep;
@@ -21,6 +22,7 @@ pub use filter::chain::{FilterChain, LONGEST_TIME_CONSTANT, MAX_FILTERS, SHORTES
 pub use filter::train::PulseTrain;
 pub use lookahead::circle_feed::largest_circle_feed;
 pub use planner::{FirInterpolation, plan};
+pub use pulse_corner::PulseCorner;
 pub use settings::{Method, Settings};
 pub use ticks::tick_filter::TickFilter;
 pub use ticks::tick_pulse::TickPulse;

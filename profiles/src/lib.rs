@@ -14,7 +14,7 @@ mod piecewise;
 mod profile;
 mod rise;
 
-pub use blend::{BlendError, Blender, Boundary, CornerMotion};
+pub use blend::{BlendError, BlendPhase, BlendShape, Blender, Boundary, MAX_PHASES, Part};
 pub use connection::SCurveBoundary;
 pub use error::ProfileError;
 pub use feed::SCurve;

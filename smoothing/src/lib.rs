@@ -20,7 +20,6 @@ mod stretch;
 mod work;
 
 pub use corner::interrupted::Interrupted;
-pub use corner::shape::{BlendShape, CornerBlend, Form, Part};
 pub use corner::stop_start::StopStart;
 pub use corner::uninterrupted::Uninterrupted;
 pub use method::{Method, Settings};

@@ -2,7 +2,10 @@
 //!
 //! Source: the comparison of section 2.4. Not here: the planning.
 
+use crate::corner::candidates::blenders_of;
+use std::sync::Arc;
 use toolglide_kinematics::Limits;
+use toolglide_profiles::Blender;
 
 /// Which corner motions a plan may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +79,15 @@ impl<const N: usize> Settings<N> {
             method: Method::Kcs,
             window: 512,
         }
+    }
+
+    /// The blenders among which the method takes the fastest at every corner.
+    ///
+    /// A method that forces uninterrupted corners turns by interrupted ones where the path goes straight
+    /// on.
+    #[must_use]
+    pub fn blenders(&self) -> Vec<Arc<dyn Blender<N>>> {
+        blenders_of(self)
     }
 
     /// The same with another method.

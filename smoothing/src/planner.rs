@@ -4,16 +4,19 @@
 //! superposed corners, as are arcs, everything else corner by corner. Not here: any formula.
 
 use crate::arc_parts::{Part, Parts, without_bends};
+use crate::corner::candidates::Blenders;
 use crate::lookahead::corners::Corners;
 use crate::method::{Method, Settings};
 use crate::section::Sections;
 use crate::segment_merger::Vertex;
 use crate::stretch::{LONGEST_ARC, Stretches};
 use crate::work::Work;
+use std::sync::Arc;
 use toolglide_kinematics::{
     MotionPlanner, Move, MoveRange, Path, PathCursor, Pause, Piece, Plan, PlanError, Tolerance,
     Toolpath, Vector,
 };
+use toolglide_profiles::Blender;
 
 /// Plans kinematic corner smoothing while the path is being read.
 ///
@@ -51,14 +54,52 @@ impl<const N: usize> KinematicSmoothing<N> {
     /// A planner whose motion begins at rest at `start`.
     #[must_use]
     pub fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+        Self::planning(start, settings, None)
+    }
+
+    /// A planner that takes the fastest motion of these blenders at every corner, in place of those of
+    /// its method ([`Settings::blenders`]); it stops where none of them has one.
+    ///
+    /// [`Method::Kcs`] still compares that with corners of one kind throughout and with short-segment
+    /// smoothing. A method that forces one kind, as [`Method::KcsInterrupted`], has no other corners
+    /// than those of `blenders`.
+    ///
+    /// # Examples
+    /// ```
+    /// use std::sync::Arc;
+    /// use toolglide_kinematics::{Feedrate, Limits, Plan, Tolerance, Toolpath, Trajectory, Vector};
+    /// use toolglide_smoothing::{KinematicSmoothing, Method, Settings, StopStart};
+    /// let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Vector::<2>::from);
+    /// let path = Toolpath::from_points(&corner, Feedrate::new(100.0)?, Tolerance::new(0.1)?)?;
+    /// let limits = Limits::uniform(500.0, 2500.0, 2e5)?;
+    /// let settings = Settings::new(limits).with_method(Method::KcsInterrupted);
+    /// let interrupted = Plan::of(&path, &mut KinematicSmoothing::new(path.start(), &settings))?;
+    /// let mut blenders = settings.blenders();
+    /// blenders.push(Arc::new(StopStart::new(limits)));
+    /// let mut planner = KinematicSmoothing::with_blenders(path.start(), &settings, blenders);
+    /// assert!(Plan::of(&path, &mut planner)?.duration() < interrupted.duration());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_blenders(
+        start: Vector<N>,
+        settings: &Settings<N>,
+        blenders: Vec<Arc<dyn Blender<N>>>,
+    ) -> Self {
+        Self::planning(start, settings, Some(&blenders.into()))
+    }
+
+    fn planning(start: Vector<N>, settings: &Settings<N>, blenders: Option<&Blenders<N>>) -> Self {
         Self {
             intake: PathCursor::new(start),
             stops: settings.method == Method::ExactStop,
             arc: None,
             route: match settings.method {
-                Method::Kcs => Route::Sections(Box::new(Sections::new(start, settings))),
-                Method::KcsLocal => Route::Corners(Box::new(Corners::new(start, settings, 1))),
-                _ => Route::Stretches(Box::new(Stretches::new(start, settings))),
+                Method::Kcs => Route::Sections(Box::new(Sections::new(start, settings, blenders))),
+                Method::KcsLocal => {
+                    Route::Corners(Box::new(Corners::new(start, settings, blenders, 1)))
+                }
+                _ => Route::Stretches(Box::new(Stretches::new(start, settings, blenders))),
             },
         }
     }

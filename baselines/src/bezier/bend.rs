@@ -10,9 +10,8 @@ use super::quintic::{Offset, PARTS, Quintic};
 use toolglide_kinematics::{
     Corner, Limits, MoveRange, PathLimits, Piece, Sample, Vector, largest_multiple,
 };
-use toolglide_profiles::{Boundary, SCurveBoundary};
+use toolglide_profiles::{BlendShape, Boundary, SCurveBoundary};
 use toolglide_smoothing::parts::STRAIGHT;
-use toolglide_smoothing::{BlendShape, Form};
 
 /// Pieces of one corner: its parts, and one on each straight side.
 pub(super) const PIECES: usize = PARTS + 2;
@@ -121,7 +120,7 @@ impl BezierBlend {
                 speed,
                 acceleration: 0.0,
             };
-            BlendShape::symmetric(boundary, 0.0, Form::Through)
+            BlendShape::at(boundary)
         } else {
             BlendShape::STOP
         }

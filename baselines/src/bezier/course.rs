@@ -7,7 +7,7 @@
 use super::bend::{BezierBlend, PIECES};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, MoveRange, Pause, Piece, Vector};
-use toolglide_smoothing::BlendShape;
+use toolglide_profiles::BlendShape;
 use toolglide_smoothing::parts::{
     Link, MAX_PIECES, ROUNDING_SHARE, Segment, SegmentMerger, Vertex, Window, corner_between,
     unroll_leg,

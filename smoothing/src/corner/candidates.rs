@@ -4,105 +4,113 @@
 //! short moves.
 
 use crate::corner::interrupted::Interrupted;
-use crate::corner::shape::BlendShape;
 use crate::corner::stop_start::StopStart;
 use crate::corner::uninterrupted::Uninterrupted;
 use crate::method::{Method, Settings};
+use std::sync::Arc;
 use toolglide_kinematics::{Corner, Limits, PathLimits};
-use toolglide_profiles::{Blender, Boundary, SpeedRamp};
+use toolglide_profiles::{BlendShape, Blender, Boundary, SpeedRamp};
 
-/// How the motions of one window are selected.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Selection<const N: usize> {
-    kind: Kind,
-    limits: Limits<N>,
-    interrupted: Interrupted<N>,
-    uninterrupted: Uninterrupted<N>,
-    stop_start: StopStart<N>,
-    unequal: [Uninterrupted<N>; UNEQUAL.len()],
-}
+/// The blenders that compete at every corner.
+pub(crate) type Blenders<const N: usize> = Arc<[Arc<dyn Blender<N>>]>;
 
 /// Ratios of the speeds after and before a corner that are tried beside equal ones.
 const UNEQUAL: [f64; 4] = [0.5, 0.75, 1.0 / 0.75, 2.0];
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+/// How the motions of one window are selected.
+#[derive(Clone, Debug)]
+pub(crate) struct Selection<const N: usize> {
+    kind: Kind<N>,
+    limits: Limits<N>,
+    interrupted: Interrupted<N>,
+    uninterrupted: Uninterrupted<N>,
+}
+
+#[derive(Clone, Debug)]
+enum Kind<const N: usize> {
     Interrupted,
     Uninterrupted,
-    Fastest,
+    /// The fastest of these blenders.
+    Fastest(Blenders<N>),
+}
+
+/// The blenders among which a method takes the fastest; none where it forces one kind.
+pub(crate) fn blenders_of<const N: usize>(settings: &Settings<N>) -> Vec<Arc<dyn Blender<N>>> {
+    let limits = settings.limits;
+    match settings.method {
+        // Between its stops, an exact stop has only the chords of an arc to turn.
+        Method::Kcs | Method::ExactStop => {
+            let mut blenders: Vec<Arc<dyn Blender<N>>> = vec![
+                Arc::new(Interrupted::new(limits)),
+                Arc::new(Uninterrupted::new(limits)),
+                Arc::new(StopStart::new(limits)),
+            ];
+            for ratio in UNEQUAL {
+                blenders.push(Arc::new(Uninterrupted::unequal(limits, ratio)));
+            }
+            blenders
+        }
+        Method::KcsInterrupted => vec![Arc::new(Interrupted::new(limits))],
+        Method::KcsUninterrupted | Method::KcsLocal | Method::KcsGlobal => {
+            vec![Arc::new(Uninterrupted::new(limits))]
+        }
+    }
 }
 
 impl<const N: usize> Selection<N> {
-    /// The selections whose windows a method plans with.
-    pub(crate) fn of(settings: &Settings<N>) -> Vec<Self> {
-        let kinds: &[Kind] = match settings.method {
-            // Between its stops, an exact stop has only the chords of an arc to turn.
-            Method::Kcs | Method::ExactStop => {
-                &[Kind::Fastest, Kind::Interrupted, Kind::Uninterrupted]
-            }
-            Method::KcsInterrupted => &[Kind::Interrupted],
-            Method::KcsUninterrupted | Method::KcsLocal | Method::KcsGlobal => {
-                &[Kind::Uninterrupted]
-            }
+    /// The selections whose windows a method plans with; `blenders` take the place of its own.
+    pub(crate) fn of(settings: &Settings<N>, blenders: Option<&Blenders<N>>) -> Vec<Self> {
+        let forced = match settings.method {
+            Method::Kcs | Method::ExactStop => &[Kind::Interrupted, Kind::Uninterrupted][..],
+            _ => &[],
         };
-        kinds
-            .iter()
-            .map(|&kind| Self {
+        let first = match (blenders, settings.method) {
+            (Some(blenders), _) => Kind::Fastest(Arc::clone(blenders)),
+            (None, Method::KcsInterrupted) => Kind::Interrupted,
+            (None, Method::Kcs | Method::ExactStop) => Kind::Fastest(blenders_of(settings).into()),
+            (None, _) => Kind::Uninterrupted,
+        };
+        std::iter::once(first)
+            .chain(forced.iter().cloned())
+            .map(|kind| Self {
                 kind,
                 limits: settings.limits,
                 interrupted: Interrupted::new(settings.limits),
                 uninterrupted: Uninterrupted::new(settings.limits),
-                stop_start: StopStart::new(settings.limits),
-                unequal: UNEQUAL.map(|ratio| Uninterrupted::unequal(settings.limits, ratio)),
             })
             .collect()
     }
 
     /// Whether the window starts from balanced scales: uninterrupted corners need it.
     pub(crate) fn is_balanced(&self) -> bool {
-        self.kind != Kind::Interrupted
+        !matches!(self.kind, Kind::Interrupted)
     }
 
     /// The uninterrupted corner as if the moves beside it were long.
     pub(crate) fn unscaled(&self, corner: &Corner<N>) -> Option<BlendShape> {
-        self.uninterrupted
-            .blend(corner)
-            .ok()
-            .map(|turn| *turn.shape())
+        self.uninterrupted.blend(corner, 0.0, 0.0).ok()
     }
 
     /// The interrupted corner as if the moves beside it were long.
     pub(crate) fn interrupted(&self, corner: &Corner<N>) -> BlendShape {
         self.interrupted
-            .blend(corner)
-            .map_or(BlendShape::STOP, |turn| *turn.shape())
+            .blend(corner, 0.0, 0.0)
+            .unwrap_or(BlendShape::STOP)
     }
 
-    /// The motion for a corner between moves of two lengths.
+    /// The motion for a corner between moves of two lengths: a stop where no blender has one.
     pub(crate) fn shape(&self, corner: &Corner<N>, before: f64, after: f64) -> BlendShape {
-        let interrupted = || self.interrupted.blend(corner).map(|turn| *turn.shape());
-        let uninterrupted = || self.uninterrupted.blend(corner).map(|turn| *turn.shape());
-        let shape = match self.kind {
-            Kind::Interrupted => interrupted(),
-            Kind::Uninterrupted => uninterrupted().or_else(|_| interrupted()),
-            Kind::Fastest => {
-                let stop_start = self.stop_start.blend(corner).map(|turn| *turn.shape());
-                let mut fastest = interrupted();
-                // The longer move beside the corner has the higher speed.
-                let unequal = self
-                    .unequal
-                    .iter()
-                    .zip(UNEQUAL)
-                    .filter(|(_, ratio)| (after > before) == (*ratio > 1.0))
-                    .map(|(blender, _)| blender.blend(corner).map(|turn| *turn.shape()));
-                for other in [uninterrupted(), stop_start].into_iter().chain(unequal) {
-                    fastest = match (fastest, other) {
-                        (Ok(one), Ok(other)) => Ok(self.faster(corner, before, after, one, other)),
-                        (one, _) => one,
-                    };
-                }
-                fastest
-            }
+        let shape = match &self.kind {
+            Kind::Interrupted => self.interrupted.blend(corner, before, after).ok(),
+            Kind::Uninterrupted => self
+                .uninterrupted
+                .blend(corner, before, after)
+                .or_else(|_| self.interrupted.blend(corner, before, after))
+                .ok(),
+            Kind::Fastest(blenders) => blenders
+                .iter()
+                .filter_map(|blender| blender.blend(corner, before, after).ok())
+                .reduce(|one, other| self.faster(corner, before, after, one, other)),
         };
         shape.unwrap_or(BlendShape::STOP)
     }

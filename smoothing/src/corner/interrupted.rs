@@ -3,9 +3,8 @@
 //! Source: section 2.2.2 and 2.3, equations 2.19 to 2.33, in vector form; a corner whose speed the
 //! feedrate limits is the same motion at that speed. Not here: how corners share a short move.
 
-use crate::corner::shape::{BlendShape, CornerBlend, Form};
 use toolglide_kinematics::{Corner, Limits, largest_multiple};
-use toolglide_profiles::{BlendError, Blender, Boundary};
+use toolglide_profiles::{BlendError, BlendPhase, BlendShape, Blender, Boundary};
 
 /// Turns a corner at one speed, exchanging the incoming velocity for the outgoing one along an
 /// S-curve that saturates the jerk, and the acceleration where it lasts long enough.
@@ -13,7 +12,7 @@ use toolglide_profiles::{BlendError, Blender, Boundary};
 /// # Examples
 /// ```
 /// use toolglide_kinematics::{Corner, Limits, Tolerance, Vector};
-/// use toolglide_profiles::{Blender, CornerMotion};
+/// use toolglide_profiles::Blender;
 /// use toolglide_smoothing::Interrupted;
 /// let corner = Corner {
 ///     point: Vector::<2>::zeros(),
@@ -23,9 +22,10 @@ use toolglide_profiles::{BlendError, Blender, Boundary};
 ///     speed_out: 100.0,
 ///     tolerance: Tolerance::new(0.1)?,
 /// };
-/// let turn = Interrupted::new(Limits::uniform(500.0, 2500.0, 2e5)?).blend(&corner)?;
-/// assert!((turn.entry().speed - 32.995).abs() < 1e-3);
-/// assert!((turn.corner_error() - 0.1).abs() < 1e-12);
+/// let blender = Interrupted::new(Limits::uniform(500.0, 2500.0, 2e5)?);
+/// let shape = blender.blend(&corner, 10.0, 10.0)?;
+/// assert!((shape.entry.speed - 32.995).abs() < 1e-3);
+/// assert!((shape.corner_error(&corner) - 0.1).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,16 +41,17 @@ impl<const N: usize> Interrupted<N> {
     }
 }
 
-impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
-    type Motion = CornerBlend<N>;
-
-    /// Never fails: going straight on is a turn of no duration.
-    fn blend(&self, corner: &Corner<N>) -> Result<CornerBlend<N>, BlendError> {
+impl<const N: usize> Blender<N> for Interrupted<N> {
+    /// Going straight on is a blend of no duration.
+    ///
+    /// # Errors
+    /// [`BlendError::NotClosed`] should the phases miss the boundaries, which no test has produced.
+    fn blend(&self, corner: &Corner<N>, _: f64, _: f64) -> Result<BlendShape, BlendError> {
         let turned = corner.outgoing - corner.incoming;
         let feedrate = corner.speed_in.min(corner.speed_out);
         let size = turned.norm();
         if size <= crate::STRAIGHT {
-            return Ok(CornerBlend::new(BlendShape::through(feedrate), *corner));
+            return Ok(BlendShape::through(feedrate));
         }
         let acceleration = largest_multiple(&turned, self.limits.acceleration());
         let jerk = largest_multiple(&turned, self.limits.jerk());
@@ -58,18 +59,20 @@ impl<const N: usize> Blender<Corner<N>> for Interrupted<N> {
         let speed = speed_for_error(error, acceleration, jerk).min(feedrate);
         let (ramp, hold) = ramps(speed, acceleration, jerk);
         let duration = 2.0 * ramp + hold;
-        Ok(CornerBlend::new(
-            BlendShape::symmetric(
-                Boundary {
-                    distance: 0.5 * speed * duration,
-                    speed,
-                    acceleration: 0.0,
-                },
-                duration,
-                Form::Interrupted { ramp },
-            ),
-            *corner,
-        ))
+        let boundary = Boundary {
+            distance: 0.5 * speed * duration,
+            speed,
+            acceleration: 0.0,
+        };
+        let jerk = speed / ((ramp + hold) * ramp);
+        // The velocity that is taken from the incoming move is given to the outgoing one.
+        let phase = |duration, jerk: f64| BlendPhase {
+            duration,
+            jerk_in: -jerk,
+            jerk_out: jerk,
+        };
+        let phases = [phase(ramp, jerk), phase(hold, 0.0), phase(ramp, -jerk)];
+        BlendShape::between(boundary, boundary, duration, &phases)
     }
 }
 

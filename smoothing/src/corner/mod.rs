@@ -2,6 +2,5 @@
 
 pub(crate) mod candidates;
 pub(crate) mod interrupted;
-pub(crate) mod shape;
 pub(crate) mod stop_start;
 pub(crate) mod uninterrupted;

@@ -5,10 +5,9 @@
 //! corner as its case of a single jerk phase. Where that corner is limited by acceleration, this one
 //! turns up to four hundredths faster. Not here: unequal speeds.
 
-use crate::corner::shape::{BlendShape, CornerBlend, Form};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, Limits, Vector, largest_multiple};
-use toolglide_profiles::{BlendError, Blender, Boundary};
+use toolglide_profiles::{BlendError, BlendPhase, BlendShape, Blender, Boundary};
 
 /// Turns a corner by a stop along the incoming and a start along the outgoing move, which overlap
 /// completely.
@@ -16,7 +15,7 @@ use toolglide_profiles::{BlendError, Blender, Boundary};
 /// # Examples
 /// ```
 /// use toolglide_kinematics::{Corner, Limits, Tolerance, Vector};
-/// use toolglide_profiles::{Blender, CornerMotion};
+/// use toolglide_profiles::Blender;
 /// use toolglide_smoothing::StopStart;
 /// let corner = Corner {
 ///     point: Vector::<2>::zeros(),
@@ -26,8 +25,9 @@ use toolglide_profiles::{BlendError, Blender, Boundary};
 ///     speed_out: 100.0,
 ///     tolerance: Tolerance::new(0.1)?,
 /// };
-/// let turn = StopStart::new(Limits::uniform(500.0, 2500.0, 2e5)?).blend(&corner)?;
-/// assert!((turn.corner_error() - 0.1).abs() < 1e-9);
+/// let blender = StopStart::new(Limits::uniform(500.0, 2500.0, 2e5)?);
+/// let shape = blender.blend(&corner, 10.0, 10.0)?;
+/// assert!((shape.corner_error(&corner) - 0.1).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,13 +43,11 @@ impl<const N: usize> StopStart<N> {
     }
 }
 
-impl<const N: usize> Blender<Corner<N>> for StopStart<N> {
-    type Motion = CornerBlend<N>;
-
+impl<const N: usize> Blender<N> for StopStart<N> {
     /// # Errors
     /// [`BlendError::Straight`] where the path goes straight on, and [`BlendError::Impossible`] where
     /// one jerk phase is all there is, which is the uninterrupted corner.
-    fn blend(&self, corner: &Corner<N>) -> Result<CornerBlend<N>, BlendError> {
+    fn blend(&self, corner: &Corner<N>, _: f64, _: f64) -> Result<BlendShape, BlendError> {
         let half_sine = corner.half_turn_sine();
         if 2.0 * half_sine <= crate::STRAIGHT {
             return Err(BlendError::Straight {
@@ -103,43 +101,63 @@ impl<const N: usize> Blender<Corner<N>> for StopStart<N> {
                 reason: "its jerk never reaches the acceleration limit",
             });
         }
-        Ok(CornerBlend::new(
-            BlendShape::symmetric(
-                Boundary {
-                    distance: start.distance_at(duration),
-                    speed: start.speed_at(duration),
-                    acceleration,
-                },
-                duration,
-                Form::StopStart { ramp: start.ramp() },
-            ),
-            *corner,
-        ))
+        let boundary = Boundary {
+            distance: start.distance_at(duration),
+            speed: start.speed_at(duration),
+            acceleration,
+        };
+        BlendShape::between(boundary, boundary, duration, &start.overlapped(duration))
     }
 }
 
 /// A start from rest: constant jerk up to an acceleration that is then held.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Start {
-    pub(crate) jerk: f64,
-    pub(crate) acceleration: f64,
+struct Start {
+    jerk: f64,
+    acceleration: f64,
 }
 
 impl Start {
-    pub(crate) fn ramp(&self) -> f64 {
+    fn ramp(&self) -> f64 {
         self.acceleration / self.jerk
     }
 
-    pub(crate) fn acceleration_at(&self, time: f64) -> f64 {
+    /// The phases of this start and of its mirror image along the incoming move, over one duration of more than a ramp.
+    fn overlapped(&self, duration: f64) -> [BlendPhase; 3] {
+        let ramp = self.ramp();
+        let jerk = self.acceleration / ramp;
+        let phase = |duration, jerk_in, jerk_out| BlendPhase {
+            duration,
+            jerk_in,
+            jerk_out,
+        };
+        if duration >= 2.0 * ramp {
+            let hold = duration - 2.0 * ramp;
+            [
+                phase(ramp, 0.0, jerk),
+                phase(hold, 0.0, 0.0),
+                phase(ramp, jerk, 0.0),
+            ]
+        } else {
+            let alone = duration - ramp;
+            [
+                phase(alone, 0.0, jerk),
+                phase(ramp - alone, jerk, jerk),
+                phase(alone, jerk, 0.0),
+            ]
+        }
+    }
+
+    fn acceleration_at(&self, time: f64) -> f64 {
         (self.jerk * time).min(self.acceleration)
     }
 
-    pub(crate) fn speed_at(&self, time: f64) -> f64 {
+    fn speed_at(&self, time: f64) -> f64 {
         let ramp = self.ramp().min(time);
         0.5 * self.jerk * ramp * ramp + self.acceleration * (time - ramp)
     }
 
-    pub(crate) fn distance_at(&self, time: f64) -> f64 {
+    fn distance_at(&self, time: f64) -> f64 {
         let ramp = self.ramp().min(time);
         let held = time - ramp;
         let speed = 0.5 * self.jerk * ramp * ramp;

@@ -4,17 +4,16 @@
 //! is a cubic Bezier curve whose two inner control points are the corner. Not here: how corners share a
 //! short move.
 
-use crate::corner::shape::{BlendShape, CornerBlend, Form};
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, Limits, PathLimits, largest_multiple};
-use toolglide_profiles::{BlendError, Blender, Boundary, SpeedRamp};
+use toolglide_profiles::{BlendError, BlendPhase, BlendShape, Blender, Boundary, SpeedRamp};
 
 /// Turns a corner with one phase of constant jerk, losing speed into it and regaining it after.
 ///
 /// # Examples
 /// ```
 /// use toolglide_kinematics::{Corner, Limits, Tolerance, Vector};
-/// use toolglide_profiles::{Blender, CornerMotion};
+/// use toolglide_profiles::Blender;
 /// use toolglide_smoothing::Uninterrupted;
 /// let corner = Corner {
 ///     point: Vector::<2>::zeros(),
@@ -24,9 +23,10 @@ use toolglide_profiles::{BlendError, Blender, Boundary, SpeedRamp};
 ///     speed_out: 100.0,
 ///     tolerance: Tolerance::new(0.1)?,
 /// };
-/// let turn = Uninterrupted::new(Limits::uniform(500.0, 2500.0, 2e5)?).blend(&corner)?;
-/// assert!((turn.entry().speed - 46.058).abs() < 1e-3);
-/// assert!((turn.corner_error() - 0.1).abs() < 1e-12);
+/// let blender = Uninterrupted::new(Limits::uniform(500.0, 2500.0, 2e5)?);
+/// let shape = blender.blend(&corner, 10.0, 10.0)?;
+/// assert!((shape.entry.speed - 46.058).abs() < 1e-3);
+/// assert!((shape.corner_error(&corner) - 0.1).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +44,8 @@ impl<const N: usize> Uninterrupted<N> {
         Self::unequal(limits, 1.0)
     }
 
-    /// Corners that are left at `ratio` (positive) times the speed at which they are entered: where the
-    /// moves beside them differ in length or feedrate.
+    /// Corners that are left at `ratio` (positive) times the speed at which they are entered, faster
+    /// only into the longer move: where the moves beside them differ in length.
     #[must_use]
     pub fn unequal(limits: Limits<N>, ratio: f64) -> Self {
         let ratio = ratio.max(f64::MIN_POSITIVE);
@@ -57,13 +57,19 @@ impl<const N: usize> Uninterrupted<N> {
     }
 }
 
-impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
-    type Motion = CornerBlend<N>;
-
+impl<const N: usize> Blender<N> for Uninterrupted<N> {
     /// # Errors
     /// [`BlendError::Straight`] where the path goes straight on: this motion would slow down for
-    /// nothing.
-    fn blend(&self, corner: &Corner<N>) -> Result<CornerBlend<N>, BlendError> {
+    /// nothing. [`BlendError::Impossible`] where unequal speeds would make the longer move the slower
+    /// one.
+    fn blend(&self, corner: &Corner<N>, before: f64, after: f64) -> Result<BlendShape, BlendError> {
+        let is_equal = (self.ratio - 1.0).abs() < f64::EPSILON;
+        if !is_equal && (after > before) != (self.ratio > 1.0) {
+            return Err(BlendError::Impossible {
+                turn_angle: corner.turn_angle(),
+                reason: "the longer move would be the slower one",
+            });
+        }
         let half_sine = corner.half_turn_sine();
         if 2.0 * half_sine <= crate::STRAIGHT {
             return Err(BlendError::Straight {
@@ -88,7 +94,29 @@ impl<const N: usize> Blender<Corner<N>> for Uninterrupted<N> {
             speed_in: corner.speed_in,
             speed_out: corner.speed_out,
         };
-        Ok(CornerBlend::new(family.fastest(), *corner))
+        family.fastest().shape()
+    }
+}
+
+/// One phase of constant jerk, and where it leaves and joins the moves.
+struct Cubic {
+    entry: Boundary,
+    exit: Boundary,
+    duration: f64,
+}
+
+impl Cubic {
+    fn shape(&self) -> Result<BlendShape, BlendError> {
+        if self.duration <= 0.0 {
+            return Ok(BlendShape::reversal(self.entry.acceleration));
+        }
+        let jerk = self.entry.acceleration / self.duration;
+        let phase = BlendPhase {
+            duration: self.duration,
+            jerk_in: jerk,
+            jerk_out: jerk * (self.exit.acceleration / self.entry.acceleration),
+        };
+        BlendShape::between(self.entry, self.exit, self.duration, &[phase])
     }
 }
 
@@ -110,7 +138,7 @@ struct Family {
 impl Family {
     /// The fastest of the family, from which the acceleration can run out below the feedrate on both
     /// sides; the printed method forgets the latter.
-    fn fastest(&self) -> BlendShape {
+    fn fastest(&self) -> Cubic {
         let reach = self.error / self.error_per_reach;
         let by_acceleration = (0.5 * self.acceleration * reach).sqrt(); // 2.43
         let by_jerk_cubed = 0.5 * self.jerk * reach * reach; // 2.42
@@ -135,14 +163,14 @@ impl Family {
         }
     }
 
-    fn shape(&self, speed: f64, acceleration: f64) -> BlendShape {
+    fn shape(&self, speed: f64, acceleration: f64) -> Cubic {
         let duration = 2.0 * speed / acceleration;
         let entry = Boundary {
             distance: speed * duration / 3.0,
             speed,
             acceleration,
         };
-        BlendShape {
+        Cubic {
             entry,
             exit: Boundary {
                 distance: self.ratio * entry.distance,
@@ -150,13 +178,12 @@ impl Family {
                 acceleration: self.ratio * acceleration,
             },
             duration,
-            form: Form::Uninterrupted,
         }
     }
 
     /// The largest speed up to `most` from which the acceleration can run out below the feedrate; the
     /// peak grows with the speed, so the bound is searched.
-    fn slowed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> BlendShape {
+    fn slowed(&self, most: f64, acceleration_at: impl Fn(f64) -> f64) -> Cubic {
         let (mut low, mut high) = (
             0.0,
             most.min(self.speed_in).min(self.speed_out / self.ratio),
@@ -173,7 +200,7 @@ impl Family {
         shape(low)
     }
 
-    fn runs_out(&self, shape: &BlendShape) -> bool {
+    fn runs_out(&self, shape: &Cubic) -> bool {
         let peak = |boundary: &Boundary, jerk| {
             SpeedRamp::least_peak(boundary.speed, boundary.acceleration, jerk)
         };
@@ -182,7 +209,7 @@ impl Family {
     }
 
     /// Time lost against passing at the feedrate.
-    fn loss(&self, shape: &BlendShape) -> f64 {
+    fn loss(&self, shape: &Cubic) -> f64 {
         let beside = |boundary: &Boundary, limits: &PathLimits, feedrate: f64| {
             let rise = SpeedRamp::to_peak(
                 boundary.speed,

@@ -6,11 +6,11 @@
 //! equal halves, one of whose two roots leaves the path. Not here: which corners overlap, and the two
 //! jerks.
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::two_jerks::{Marks, Middle, TwoJerks, solve};
 use crate::segment::Segment;
 use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK};
 use toolglide_kinematics::{Limits, MoveRange, Piece, Sample, Vector};
+use toolglide_profiles::BlendShape;
 
 /// Durations tried, as shares of the distance over the mean speed.
 const SHORTEST: f64 = 0.6;

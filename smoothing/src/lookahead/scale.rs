@@ -3,10 +3,9 @@
 //! Source: section 3.3.1; lengths go with the cube of the scale. Not here: the order in which corners
 //! are looked at, see the window.
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::window::{Link, Node};
 use toolglide_kinematics::numeric::{CLOSURE, SEARCH_PRECISION};
-use toolglide_profiles::{Boundary, SCurveBoundary, SpeedRamp};
+use toolglide_profiles::{BlendShape, Boundary, SCurveBoundary, SpeedRamp};
 
 /// Speed that is reached when the acceleration at the boundary of a turn runs out on `link`.
 #[inline]
@@ -63,8 +62,8 @@ fn room(
     right_scale: f64,
     link: &Link,
 ) -> f64 {
-    let left = left.scaled(left_scale).exit;
-    let right = right.scaled(right_scale).entry;
+    let left = left.exit.scaled(left_scale);
+    let right = right.entry.scaled(right_scale);
     let connection = SCurveBoundary {
         from: [left.speed, left.acceleration],
         to: [right.speed, right.acceleration],

@@ -4,9 +4,9 @@
 //! between them, in closed form; the durations at which an axis gains or loses its pair are roots of
 //! two quadratics. Not here: whether limits are kept.
 
-use crate::corner::shape::BlendShape;
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::numeric::CLOSURE;
+use toolglide_profiles::BlendShape;
 
 /// The state in the middle of a corner.
 #[derive(Clone, Copy, Debug)]

@@ -3,10 +3,9 @@
 //! Source: sections 3.2 and 3.3. Each leg and each corner is anchored at programmed points, so that
 //! rounding does not add up along the path. Not here: the choice of the corner.
 
-use crate::corner::shape::{BlendShape, CornerBlend, Part};
 use crate::segment::Segment;
 use toolglide_kinematics::{Corner, MoveRange, Piece, Sample, Tolerance};
-use toolglide_profiles::{ProfileError, SCurve, SCurveBoundary};
+use toolglide_profiles::{BlendShape, Part, ProfileError, SCurve, SCurveBoundary};
 
 /// Most pieces of a leg, its corner and a pause.
 pub const MAX_PIECES: usize = 16;
@@ -102,5 +101,5 @@ pub(crate) fn unroll_corner<const N: usize>(
         first: leg.serves.first,
         last: next.serves.last,
     };
-    CornerBlend::new(*shape, corner).pieces(part, serves, take);
+    shape.unroll(&corner, part, serves, take);
 }

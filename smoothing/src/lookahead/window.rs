@@ -8,11 +8,11 @@
 //! corner, and the forward pass never leaves it: a safe stop always exists. Not here: which kind of
 //! motion a corner gets.
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::scale::{balance, feed_cap, furthest, reachable};
 use std::collections::VecDeque;
 use toolglide_kinematics::PathLimits;
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
+use toolglide_profiles::BlendShape;
 
 /// A backward pass waits until of the nodes that it looks at at most so many times as many are old as are new.
 const PASSES: usize = 2;

@@ -6,6 +6,7 @@
 mod ways;
 
 use crate::arc_parts::{MAX_CHORDS, without_bends};
+use crate::corner::candidates::Blenders;
 use crate::method::Settings;
 use crate::segment::Segment;
 use crate::segment_merger::{SegmentMerger, Vertex};
@@ -67,9 +68,13 @@ enum State {
 }
 
 impl<const N: usize> Sections<N> {
-    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+    pub(crate) fn new(
+        start: Vector<N>,
+        settings: &Settings<N>,
+        blenders: Option<&Blenders<N>>,
+    ) -> Self {
         Self {
-            stretches: Stretches::new(start, settings),
+            stretches: Stretches::new(start, settings, blenders),
             state: State::Rested,
             start,
             merger: SegmentMerger::new(start, settings.limits, FINE_SHARE),

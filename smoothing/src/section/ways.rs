@@ -47,8 +47,10 @@ pub(super) struct Ways<const N: usize> {
 impl<const N: usize> Ways<N> {
     pub(super) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
         Self {
-            kinds: KINDS
-                .map(|(method, most)| Corners::new(start, &settings.with_method(method), most + 2)),
+            kinds: KINDS.map(|(method, most)| {
+                let settings = settings.with_method(method);
+                Corners::new(start, &settings, None, most + 2)
+            }),
             merger: SegmentMerger::new(start, settings.limits, COARSE_SHARE),
             coarse: Vec::with_capacity(super::MAX_HELD + 2),
             effort: MAX_EFFORT,

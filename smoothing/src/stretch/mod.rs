@@ -11,6 +11,7 @@ mod vertices;
 
 use crate::lookahead::corners::Corners;
 
+use crate::corner::candidates::Blenders;
 use crate::method::{Method, Settings};
 use crate::segment::Segment;
 use crate::segment_merger::{MAX_MERGED, SegmentMerger, Vertex};
@@ -86,14 +87,18 @@ enum Event<const N: usize> {
 }
 
 impl<const N: usize> Stretches<N> {
-    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>) -> Self {
+    pub(crate) fn new(
+        start: Vector<N>,
+        settings: &Settings<N>,
+        blenders: Option<&Blenders<N>>,
+    ) -> Self {
         Self {
             limits: settings.limits,
             merger: SegmentMerger::new(start, settings.limits, FINE_SHARE),
             vertices: Vertices::with_capacity(MAX_VERTICES + LONGEST_ARC + 2 * MAX_MERGED),
             legs: Vec::with_capacity(MAX_LEGS + LONGEST_ARC),
-            corners: Corners::new(start, settings, MAX_VERTICES + LONGEST_ARC),
-            trial: Corners::new(start, settings, 1),
+            corners: Corners::new(start, settings, blenders, MAX_VERTICES + LONGEST_ARC),
+            trial: Corners::new(start, settings, blenders, 1),
             superposer: ShortSegmentSmoother::new(settings.limits, MAX_LEGS + LONGEST_ARC),
             planned: 0,
             ahead: 0.0,

@@ -9,11 +9,11 @@
 
 mod stage;
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::window::Link;
 pub(crate) use stage::MAX_CANDIDATES;
 use stage::Stage;
 use std::collections::VecDeque;
+use toolglide_profiles::BlendShape;
 
 /// Most corners between two attempts to commit, each of which looks at all that wait.
 const PATIENCE: usize = 16;

@@ -2,9 +2,8 @@
 //!
 //! Source: ours, as the lattice. Not here: what is done with the columns.
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::window::Link;
-use toolglide_profiles::SCurveBoundary;
+use toolglide_profiles::{BlendShape, SCurveBoundary};
 
 /// Most candidates of one corner.
 pub(crate) const MAX_CANDIDATES: usize = 8;

@@ -8,8 +8,7 @@ mod division;
 mod offer;
 mod unroll;
 
-use crate::corner::candidates::Selection;
-use crate::corner::shape::BlendShape;
+use crate::corner::candidates::{Blenders, Selection};
 use crate::lookahead::candidate_graph::{CandidateGraph, Choice};
 use crate::lookahead::unroll::{MAX_PIECES, corner_between};
 use crate::lookahead::window::{Link, Window};
@@ -21,6 +20,7 @@ pub(crate) use division::room_beside;
 use offer::overlapping_of;
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, PathLimits, Pause, Piece, Tolerance, Vector};
+use toolglide_profiles::BlendShape;
 
 /// Plans the corners of a stream of vertices, from rest to rest.
 #[derive(Clone, Debug)]
@@ -56,10 +56,16 @@ pub(crate) struct Corners<const N: usize> {
 }
 
 impl<const N: usize> Corners<N> {
-    /// A planner that takes `burst` legs without being pulled before it allocates.
-    pub(crate) fn new(start: Vector<N>, settings: &Settings<N>, burst: usize) -> Self {
+    /// A planner that takes `burst` legs without being pulled before it allocates; `blenders` take the place of those
+    /// of the method.
+    pub(crate) fn new(
+        start: Vector<N>,
+        settings: &Settings<N>,
+        blenders: Option<&Blenders<N>>,
+        burst: usize,
+    ) -> Self {
         let size = settings.window.max(SHORTEST_WINDOW);
-        let selections = Selection::of(settings);
+        let selections = Selection::of(settings, blenders);
         let windows: Vec<_> = selections
             .iter()
             .map(|selection| Window::new(size, selection.is_balanced()))

@@ -2,12 +2,12 @@
 //!
 //! Source: ours. Not here: how the candidates are made, and the choice among them.
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::candidate_graph::MAX_CANDIDATES;
 use crate::lookahead::corners::{Corners, corner_tolerance, goes_round, link_of};
 use crate::lookahead::overlap::OverlappedPair;
 use crate::lookahead::unroll::corner_between;
 use crate::method::Method;
+use toolglide_profiles::BlendShape;
 
 /// Scales of the uninterrupted corner that are tried overlapping, as shares of the scale at which it
 /// reaches over the whole of the shorter move beside it.

@@ -2,11 +2,11 @@
 //!
 //! Source: section 3.3. Not here: the choice.
 
-use crate::corner::shape::Part;
 use crate::lookahead::candidate_graph::Choice;
 use crate::lookahead::corners::{Corners, corner_tolerance};
 use crate::lookahead::overlap::OverlappedPair;
 use crate::lookahead::unroll::{corner_between, unroll_corner, unroll_leg};
+use toolglide_profiles::Part;
 
 impl<const N: usize> Corners<N> {
     /// Unrolls what is left of the corner before the next leg, and the leg.

@@ -7,14 +7,13 @@
 
 mod progress;
 
-use crate::corner::shape::BlendShape;
 use crate::lookahead::window::{Link, Window};
 use crate::short_segments::curve::Curve;
 use crate::short_segments::spline::Excess;
 use crate::short_segments::velocity_limit::survey;
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{Limits, PathLimits};
-use toolglide_profiles::Profile;
+use toolglide_profiles::{BlendShape, Profile};
 
 /// How much faster than a place allows the progress may be before it is held back there.
 const EXCESS: f64 = 1.01;
