@@ -55,6 +55,7 @@ where
     };
     let outcome = match command {
         Command::Plan(args) => commands::plan::plan(&args, out, err),
+        Command::Run(args) => commands::run::run(&args, out, err),
         Command::Verify(args) => commands::verify::verify(&args, out, err),
         Command::Compare(args) => commands::compare::compare(&args, out, err),
         Command::Score(args) => commands::score::score(&args, out, err),

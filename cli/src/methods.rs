@@ -10,7 +10,7 @@ use crate::input::silence::{all_modes, silent_modes};
 use toolglide_baselines::{BezierSmoothing, LocalOverlap};
 use toolglide_fastest::Fastest;
 use toolglide_fir::{FilterChain, FirInterpolation};
-use toolglide_kinematics::{AxisModes, Limits, MotionPlanner, PathSide, Vector};
+use toolglide_kinematics::{AxisModes, Limits, MotionPlanner, PathSide, Reserve, Vector};
 use toolglide_optimal::{Effort, Smoothing, TimeOptimal};
 use toolglide_reference::ReferencePlanner;
 use toolglide_smoothing::{KinematicSmoothing, Method, Settings};
@@ -116,6 +116,8 @@ pub(crate) struct Tuning {
     pub(crate) filters_asked: String,
     /// How much planning the method optimal may do.
     pub(crate) effort: Effort,
+    /// What is left of the limits to the execution.
+    pub(crate) reserve: Option<Reserve>,
     /// How much slower than the fastest motion of the method optimal a smoother one may be.
     pub(crate) smoothing: Smoothing,
     /// Modes that the method optimal leaves at rest, and who named them.
@@ -137,6 +139,7 @@ impl Tuning {
             filters: chain(args, setup)?,
             filters_asked: asked(args, setup),
             effort: Effort::new(args.effort).unwrap_or_default(),
+            reserve: args.reserve,
             smoothing: Smoothing::new(args.smooth / 100.0).unwrap_or_default(),
             modes: silent_modes(args, setup)?,
             modes_asked: setup.modes_asked.clone(),
@@ -186,6 +189,13 @@ pub(crate) fn planner<const N: usize>(
     limits: Limits<N>,
     tuning: &Tuning,
 ) -> Result<Box<dyn MotionPlanner<N>>, CliError> {
+    let limits = limits
+        .reserved(tuning.reserve.unwrap_or(Reserve::NONE))
+        .map_err(|reason| CliError::Option {
+            option: "--reserve",
+            value: "a limit of an axis less the reserve".to_owned(),
+            bound: reason.to_string(),
+        })?;
     if method == Method::Kcs.name() {
         return Ok(Box::new(Fastest::new(start, limits)));
     }

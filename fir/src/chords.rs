@@ -4,7 +4,9 @@
 //! thirds of the sagitta, so that the mean distance is none and the filters, which average over many
 //! chords, see a circle of the right radius. The ends are exact. Not here: feedrates.
 
-use std::f64::consts::FRAC_PI_4;
+use core::f64::consts::FRAC_PI_4;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{Arc, Vector, largest_multiple};
 
 /// Sagitta of a chord as a share of the tolerance: some seventeen chords are in the window of the
@@ -123,7 +125,7 @@ impl<const N: usize> Chords<N> {
     /// All vertices after the start.
     fn vertices(&self) -> impl Iterator<Item = Vector<N>> {
         let mut rest = *self;
-        std::iter::from_fn(move || rest.next().map(|(vertex, _)| vertex))
+        core::iter::from_fn(move || rest.next().map(|(vertex, _)| vertex))
     }
 
     /// The end of the next chord, and whether another one follows.
@@ -169,7 +171,7 @@ mod tests {
                 let mut from = arc.start();
                 let spans: Vec<_> = chords
                     .vertices()
-                    .map(|vertex| std::mem::replace(&mut from, vertex) - vertex)
+                    .map(|vertex| core::mem::replace(&mut from, vertex) - vertex)
                     .collect();
                 let shortest = spans
                     .iter()

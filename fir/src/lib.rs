@@ -5,6 +5,10 @@
 //! while a path streams in; [`plan`] does so for a whole toolpath. This crate does not know
 //! kinematic corner smoothing, machines or programs.
 
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
 mod chords;
 mod error;
 mod filter;
@@ -24,5 +28,6 @@ pub use lookahead::circle_feed::largest_circle_feed;
 pub use planner::{FirInterpolation, plan};
 pub use pulse_corner::PulseCorner;
 pub use settings::{Method, Settings};
+pub use ticks::tick_clock::TickClock;
 pub use ticks::tick_filter::TickFilter;
 pub use ticks::tick_pulse::TickPulse;

@@ -7,6 +7,8 @@
 
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{Corner, Limits, Vector, largest_multiple};
 use toolglide_profiles::{BlendError, BlendPhase, BlendShape, Blender};
 

@@ -6,6 +6,8 @@
 //! the tolerance of it, so by continuity leg and moves are never further apart; the filters get what is
 //! left of the tolerance. Not here: pulses.
 
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::numeric::SHORTEST_LENGTH;
 use toolglide_kinematics::{MoveRange, Vector};
 

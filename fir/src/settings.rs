@@ -5,6 +5,8 @@
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
 use crate::filter::cubic::CubicChain;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{Limits, Vector};
 
 /// What is left of a limit for rounding.

@@ -9,7 +9,9 @@ use crate::filter::cubic::CubicChain;
 use crate::filter::taps::{SAME_INSTANT, Taps};
 use crate::lookahead::command::{Command, TimedPulse};
 use crate::lookahead::queue::Queue;
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
 
 /// Knots after which the state is computed afresh, without a comb and with one: rounding of so many steps is

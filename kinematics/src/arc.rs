@@ -4,6 +4,8 @@
 //! real programs have both. Not here: chords, which a planner makes inside its tolerance.
 
 use crate::error::ToolpathError;
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::numeric::{
     ARC_RADIUS_MISMATCH, ARC_RADIUS_MISMATCH_MOST, ARC_RADIUS_MISMATCH_SHARE, SHORTEST_LENGTH,
 };
@@ -49,7 +51,7 @@ impl<const N: usize> Arc<N> {
     /// let quarter = Arc::about(
     ///     Vector::<2>::new(10.0, 0.0), Vector::<2>::new(0.0, 10.0), Vector::<2>::zeros(),
     ///     [0, 1], true, 0)?;
-    /// assert!((quarter.length() - 5.0 * std::f64::consts::PI).abs() < 1e-12);
+    /// assert!((quarter.length() - 5.0 * core::f64::consts::PI).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn about(
@@ -89,7 +91,7 @@ impl<const N: usize> Arc<N> {
         }
         let span = (to[0] - from[0]).hypot(to[1] - from[1]);
         let turn = (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
-        let full = std::f64::consts::TAU;
+        let full = core::f64::consts::TAU;
         let once = if span <= SHORTEST_LENGTH {
             full
         } else if counter_clockwise {
@@ -218,7 +220,7 @@ impl<const N: usize> Arc<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
     fn flat(start: [f64; 2], end: [f64; 2], ccw: bool) -> Arc<2> {
         Arc::about(start.into(), end.into(), Vector::zeros(), [0, 1], ccw, 0).unwrap()

@@ -4,8 +4,8 @@
 //! here: machines.
 
 use crate::machine::KinematicsError;
-use std::fmt;
-use std::ops::{Deref, DerefMut};
+use core::fmt;
+use core::ops::{Deref, DerefMut};
 
 /// Most axes that a machine has: X, Y, Z, A, B, C, U, V and W.
 pub const MAX_AXES: usize = 9;

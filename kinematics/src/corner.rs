@@ -3,6 +3,8 @@
 //! Source: sections 2.3 and 3.2, with the turn measured by half-angle vectors instead of an inverse
 //! cosine, so that it is exact near 0 and near 180 degrees. Not here: any motion.
 
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::tolerance::Tolerance;
 use crate::vector::Vector;
 
@@ -78,7 +80,7 @@ mod tests {
                 "{deviation}"
             );
             corner.outgoing = -corner.outgoing;
-            let short_of_reversal = std::f64::consts::PI - corner.turn_angle();
+            let short_of_reversal = core::f64::consts::PI - corner.turn_angle();
             assert!((short_of_reversal - deviation).abs() < 1e-15, "{deviation}");
         }
     }

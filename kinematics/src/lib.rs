@@ -3,12 +3,19 @@
 //! Everything is in mm, s and rad; coordinates are one per axis in path order. This crate plans
 //! nothing and judges nothing: every planner emits its [`Piece`]s, and the crate `verify` judges them.
 
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
 mod arc;
 mod axis_vector;
 mod corner;
 mod error;
 mod limits;
 mod machine;
+#[cfg(not(feature = "std"))]
+#[doc(hidden)]
+pub mod no_std;
 pub mod numeric;
 mod path_cursor;
 mod path_side;
@@ -19,6 +26,7 @@ mod planner;
 mod pose;
 mod reserve;
 mod sample;
+mod time_law;
 mod tolerance;
 mod toolpath;
 pub mod vector;
@@ -44,6 +52,7 @@ pub use pose::piece::{AxesPiece, CubicInTime, PosePiece, RotaryPiece, ToolPiece,
 pub use pose::tool_pose::ToolPose;
 pub use reserve::Reserve;
 pub use sample::{Sample, SamplePeriod};
+pub use time_law::TimeLaw;
 pub use tolerance::{Feedrate, OrientationTolerance, Tolerance};
 pub use toolpath::{Move, Path, Toolpath, check_contact};
 pub use vector::Vector;

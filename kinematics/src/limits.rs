@@ -4,6 +4,8 @@
 //! and 3.2. Not here: travel, which belongs to a machine.
 
 use crate::error::LimitsError;
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::numeric::{LARGEST_QUANTITY, LONGEST_RAMP, MIN_ACCELERATION, MIN_QUANTITY};
 use crate::reserve::Reserve;
 use crate::vector::Vector;

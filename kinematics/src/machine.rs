@@ -5,13 +5,15 @@
 
 use crate::axis_vector::{AxisVector, MAX_AXES, Solutions};
 use crate::limits::AxisLimits;
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::numeric::{ANGLE_SLACK, LENGTH_SLACK};
 use crate::pose::tool_pose::ToolPose;
 use crate::sample::SamplePeriod;
 use crate::tolerance::Tolerance;
 use crate::vector::Vector;
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use nalgebra::Matrix3;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use thiserror::Error;
 
 /// What an axis moves in.

@@ -28,7 +28,7 @@ pub const SEARCH_PRECISION: f64 = 1e-7;
 /// Start and end radius of an arc may always differ by this, mm: two roundings of both coordinates to a
 /// thousandth of an inch, which is what LinuxCNC grants programs in inches. What a program in mm may do is the
 /// business of its reader.
-pub const ARC_RADIUS_MISMATCH: f64 = 2.0 * 0.001 * std::f64::consts::SQRT_2 * 25.4;
+pub const ARC_RADIUS_MISMATCH: f64 = 2.0 * 0.001 * core::f64::consts::SQRT_2 * 25.4;
 
 /// Start and end radius of an arc may differ by this share of the radius.
 pub const ARC_RADIUS_MISMATCH_SHARE: f64 = 0.001;

@@ -55,7 +55,7 @@ impl<const N: usize> PathCursor<N> {
 
     /// Says that no move follows; `false` when that was known.
     pub fn close(&mut self) -> bool {
-        !std::mem::replace(&mut self.closed, true)
+        !core::mem::replace(&mut self.closed, true)
     }
 
     /// Whether it is known that no move follows.

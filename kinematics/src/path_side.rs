@@ -2,6 +2,9 @@
 //!
 //! Source: ours. Not here: how far it may go on the other side.
 
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
+
 /// On which side of straight lines a motion stays inside its tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PathSide {

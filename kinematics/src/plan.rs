@@ -4,6 +4,8 @@
 //! Source: section 2.2 for the pieces, sampled at exact instants instead of rounding the phases to
 //! the period. Not here: planning.
 
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::piece::Piece;
 use crate::sample::{Sample, SamplePeriod};
 use crate::vector::Vector;

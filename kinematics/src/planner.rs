@@ -42,10 +42,10 @@ impl<const N: usize> Plan<N> {
         let mut plan = Self::starting_at(path.start());
         for step in path.moves() {
             planner.push(step)?;
-            plan.extend(std::iter::from_fn(|| planner.pull()));
+            plan.extend(core::iter::from_fn(|| planner.pull()));
         }
         planner.finish()?;
-        plan.extend(std::iter::from_fn(|| planner.pull()));
+        plan.extend(core::iter::from_fn(|| planner.pull()));
         Ok(plan)
     }
 }

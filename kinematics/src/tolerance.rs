@@ -107,10 +107,10 @@ impl OrientationTolerance {
     /// [`ToolpathError::TooSmall`] below [`MIN_QUANTITY`].
     pub fn new(angle: f64) -> Result<Self, ToolpathError> {
         let (quantity, value) = ("orientation tolerance", angle);
-        if angle >= std::f64::consts::PI {
+        if angle >= core::f64::consts::PI {
             return Err(ToolpathError::NotPositive { quantity, value });
         }
-        sized(quantity, value, std::f64::consts::PI).map(Self)
+        sized(quantity, value, core::f64::consts::PI).map(Self)
     }
 
     /// The tolerance in rad.

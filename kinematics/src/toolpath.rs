@@ -4,6 +4,8 @@
 
 use crate::arc::Arc;
 use crate::error::ToolpathError;
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::numeric::{LENGTH_SLACK, LONGEST_DURATION, MIN_SHARE_OF_RADIUS};
 use crate::tolerance::{Feedrate, Tolerance};
 use crate::vector::{Vector, check};
@@ -104,6 +106,13 @@ impl<const N: usize> Move<N> {
     #[must_use]
     pub fn with_exact_stop(mut self) -> Self {
         self.stop = true;
+        self
+    }
+
+    /// The same move at another largest speed.
+    #[must_use]
+    pub fn at_feedrate(mut self, feedrate: Feedrate) -> Self {
+        self.feedrate = feedrate;
         self
     }
 

@@ -8,6 +8,8 @@ use crate::phase::Phase;
 use crate::profile::State;
 use crate::rise::SpeedRamp;
 use toolglide_kinematics::PathLimits;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::numeric::{CLOSURE, LIMIT_SLACK, SEARCH_PRECISION};
 
 /// Newton steps allowed to the search for the peak speed; bisection alone would need sixty, and

@@ -7,6 +7,8 @@
 use crate::error::ProfileError;
 use crate::phase::{Phase, integrate, knots, state_at};
 use crate::profile::{Profile, State};
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::numeric::CLOSURE;
 
 /// A three-phase change between two (speed, acceleration) states: jerk, hold, opposite jerk.

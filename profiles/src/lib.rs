@@ -4,6 +4,10 @@
 //! is accepted only after it has been integrated forward and found to meet its request. This crate
 //! knows no axes and no path: it works along one coordinate, in mm, s and rad.
 
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
 mod blend;
 mod connection;
 mod error;

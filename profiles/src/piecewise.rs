@@ -6,6 +6,8 @@
 use crate::error::ProfileError;
 use crate::phase::Phase;
 use crate::profile::{Profile, State};
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::numeric::CLOSURE;
 
 /// A polynomial of time since the start of its piece, lowest power first.

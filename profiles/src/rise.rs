@@ -3,6 +3,9 @@
 //! Source: section 3.3.1, one side of equation 3.17, integrated phase by phase because the printed
 //! closed form cancels for small accelerations. Lowering the speed is the same, mirrored in time.
 
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
+
 /// A change from a speed and a non-negative acceleration to a higher speed at zero acceleration:
 /// jerk up, hold, jerk down.
 #[derive(Clone, Copy, Debug, PartialEq)]

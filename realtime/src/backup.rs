@@ -9,6 +9,8 @@ use crate::law::{Law, ROUNDING};
 use crate::step::{Bounds, State};
 use crate::terms::Caps;
 use crate::track::Track;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Steps of a way at most.
 pub(crate) const MAX_STEPS: usize = 1024;
@@ -29,6 +31,8 @@ pub(crate) struct Backup {
     used: usize,
     /// Rate at its end; 0 where it ends at a rest of the plan.
     pub(crate) rate: f64,
+    /// Planned time at its end, s; negative infinity where that is here.
+    pub(crate) tau: f64,
 }
 
 impl Backup {
@@ -38,6 +42,7 @@ impl Backup {
             changes: Vec::with_capacity(MAX_STEPS),
             used: 0,
             rate: 0.0,
+            tau: f64::NEG_INFINITY,
         }
     }
 
@@ -46,6 +51,7 @@ impl Backup {
         self.changes.clear();
         self.used = 0;
         self.rate = rate;
+        self.tau = f64::NEG_INFINITY;
     }
 
     /// The next change, if there is one.
@@ -87,6 +93,8 @@ pub(crate) struct Ground<'a, const N: usize> {
     /// Planned time from which on that is so, and for how long, s.
     pub(crate) from: f64,
     pub(crate) reach: f64,
+    /// How much faster than the law it brakes on the way.
+    pub(crate) gain: f64,
 }
 
 impl<const N: usize> Ground<'_, N> {
@@ -130,11 +138,12 @@ impl<const N: usize> Ground<'_, N> {
             }
             let brakes = self.safe < 1.0 && self.must_brake(&x);
             if !brakes && x.rate.s.abs() <= 0.0 {
-                into.rate = x.rate.r;
+                (into.rate, into.tau) = (x.rate.r, x.tau);
                 return self.goes_on(&x);
             }
             let want = if brakes {
-                -self.bounds.most().copysign(x.rate.r)
+                let slope = self.gain * self.law.slope(x.rate.r.abs());
+                ((-slope).copysign(-x.rate.r) - x.rate.s) / h
             } else {
                 -x.rate.s / h
             };

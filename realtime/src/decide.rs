@@ -11,15 +11,41 @@ use crate::step::{Bounds, Reached, State};
 use crate::terms::Caps;
 use crate::track::Track;
 
-/// How many changes are tried in a step without caps, and with them.
-const TRIES: (u32, u32) = (1, 3);
+/// How often changes are tried in a step, and how the share of the strongest change that was taken grows when it was
+/// accepted and shrinks when it was refused.
+#[derive(Clone, Copy, Debug)]
+struct Search {
+    tries: u32,
+    grow: f64,
+    shrink: f64,
+}
 
-/// A share of the strongest change that was taken grows so, one that was refused shrinks so.
-const GROW: f64 = 1.6;
-const SHRINK: f64 = 0.4;
+/// Without caps one try is enough: what fails now is tried again a step later.
+const FREE: Search = Search {
+    tries: 1,
+    grow: 1.6,
+    shrink: 0.4,
+};
+
+/// Along a cap each refused step costs speed.
+const CAPPED: Search = Search {
+    tries: 4,
+    grow: 2.0,
+    shrink: 0.5,
+};
+
+/// How much faster than the law ways out brake: so much less after one that failed, so much more after one that did not,
+/// between these, and in the second try.
+const LESS: f64 = 0.7;
+const MORE: f64 = 1.3;
+const GAINS: (f64, f64) = (1.0, 50.0);
+const SECOND: f64 = 2.0;
 
 /// The smallest share.
 const SMALLEST: f64 = 0.01;
+
+/// Rates that are tried at a start lie so far apart.
+const START_STEP: f64 = 0.1;
 
 /// Time beyond the braking distance in which the caps are known, s.
 const CAP_REACH: f64 = 0.3;
@@ -48,6 +74,8 @@ pub(crate) struct Driver<const N: usize> {
     /// The caps that the stored way keeps.
     pub(crate) proven: Caps,
     share: f64,
+    /// How much faster than the law ways out brake.
+    gain: f64,
     /// Steps that are left of a promise; infinite where none was given.
     pub(crate) left: f64,
     /// Whether the law for every plan has taken over.
@@ -74,6 +102,7 @@ impl<const N: usize> Driver<N> {
             scratch: Backup::new(),
             proven: caps,
             share: 1.0,
+            gain: 4.0,
             left: f64::INFINITY,
             lawful: false,
             patience,
@@ -128,7 +157,7 @@ impl<const N: usize> Driver<N> {
         };
         let standing = x.rate.r.abs() <= 0.0 && x.rate.s.abs() <= 0.0;
         self.proven = if standing { aim.caps } else { proven };
-        if !aim.promised {
+        if !aim.promised || standing {
             self.left = f64::INFINITY;
         } else if self.left.is_infinite() {
             self.left = self.promise();
@@ -227,6 +256,7 @@ impl<const N: usize> Driver<N> {
             safe,
             from: x.tau,
             reach,
+            gain: 1.0,
         }
     }
 
@@ -239,7 +269,7 @@ impl<const N: usize> Driver<N> {
         (safe, reach): (f64, f64),
         x: &State,
     ) -> bool {
-        let ground = Ground {
+        let mut ground = Ground {
             track: &self.track,
             bounds: &self.bounds,
             law: &self.law,
@@ -247,9 +277,16 @@ impl<const N: usize> Driver<N> {
             safe,
             from: x.tau,
             reach,
+            gain: self.gain,
         };
-        if !ground.way_out(*to, course, &mut self.scratch) {
-            return false;
+        if ground.way_out(*to, course, &mut self.scratch) {
+            self.gain = (self.gain * MORE).min(GAINS.1);
+        } else {
+            self.gain = (self.gain * LESS).max(GAINS.0);
+            ground.gain = SECOND;
+            if safe >= 1.0 || !ground.way_out(*to, course, &mut self.scratch) {
+                return false;
+            }
         }
         if self.left.is_finite() {
             let need = self.scratch.steps() + self.law.steps_from(self.scratch.rate);
@@ -284,6 +321,7 @@ impl<const N: usize> Driver<N> {
             return None;
         }
         self.backup.settle_at(if last.rest { 0.0 } else { c });
+        self.backup.tau = end.tau;
         if settled(to.state, self.bounds.step).rate.s.abs() > 0.0 {
             self.backup.push(second);
         }
@@ -303,10 +341,10 @@ impl<const N: usize> Driver<N> {
         let some = (!caps.open()).then_some(*caps);
         let settle = self.backup.next().unwrap_or(0.0);
         let most = side * self.bounds.most();
-        let mut share = (self.share * GROW).min(1.0);
+        let search = if some.is_some() { CAPPED } else { FREE };
+        let mut share = (self.share * search.grow).min(1.0);
         let mut top = None;
-        let tries = if some.is_some() { TRIES.1 } else { TRIES.0 };
-        for _ in 0..tries {
+        for _ in 0..search.tries {
             let found = if share >= 1.0 {
                 top = self.bounds.choose(&self.track, x, most, some.as_ref());
                 top
@@ -333,7 +371,7 @@ impl<const N: usize> Driver<N> {
                     return Some((u, reached));
                 }
             }
-            share *= SHRINK;
+            share *= search.shrink;
         }
         self.share = share.max(SMALLEST);
         None
@@ -361,14 +399,31 @@ impl<const N: usize> Driver<N> {
     /// The rate at which a rest may be left at once: the one wanted, as far as the caps allow; `None` where none may.
     pub(crate) fn start_rate(&mut self, x: &State, aim: &Aim) -> Option<f64> {
         let safe = self.safe_rate(x, &aim.caps, aim.c);
-        let rate = aim.c.abs().min(safe.0).copysign(aim.c);
-        let start = State {
-            rate: Rate { r: rate, s: 0.0 },
-            ..*x
+        let side = 1.0_f64.copysign(aim.c);
+        let lowest = aim.c.abs().min(safe.0);
+        let course = Course {
+            side,
+            c: 2.0 * side,
         };
-        if rate.abs() <= 0.0 || !self.ground(&aim.caps, safe, x).goes_on(&start) {
-            return None;
+        // As fast as there is a way back to a rate that keeps the caps; at least that rate.
+        let mut rate = aim.c.abs();
+        loop {
+            let start = State {
+                rate: Rate {
+                    r: rate.copysign(aim.c),
+                    s: 0.0,
+                },
+                ..*x
+            };
+            if rate > 0.0 && self.accept(&start, course, &aim.caps, safe, x) {
+                break;
+            }
+            if rate <= lowest {
+                return None;
+            }
+            rate = (rate - START_STEP).max(lowest);
         }
+        let rate = rate.copysign(aim.c);
         self.proven = aim.caps;
         Some(rate)
     }

@@ -8,12 +8,12 @@ use crate::decide::Driver;
 use crate::event::{Event, Events};
 use crate::feeding::{FeedError, Feeding};
 use crate::law::{Law, Rate};
-use crate::motion::{MAX_STRETCHES, Stretch, TimeLaw, executed, resting};
+use crate::motion::{MAX_STRETCHES, Stretch, executed, resting};
 use crate::settings::{OverrideKind, Settings};
 use crate::step::{Bounds, State};
 use crate::terms::{Caps, Terms};
 use crate::track::Track;
-use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
+use toolglide_kinematics::{MoveRange, Piece, Sample, TimeLaw, Vector};
 
 /// Steps of planned time that are kept in hand beyond the braking distance.
 const SPARE_STEPS: f64 = 4.0;
@@ -210,6 +210,12 @@ impl<const N: usize> Executor<N> {
         self.driver.law.steps_from(1.0) * self.driver.bounds.step
     }
 
+    /// The feed override in force.
+    #[must_use]
+    pub fn feed_override(&self) -> f64 {
+        self.commands.caps().feed
+    }
+
     /// What the operator wants.
     pub fn command(&mut self) -> &mut Commands {
         &mut self.commands
@@ -310,7 +316,7 @@ impl<const N: usize> Executor<N> {
         self.count = 0;
         let mut begin = 0.0;
         let before = self.state;
-        while begin < step && self.count < MAX_STRETCHES {
+        while begin < step && self.count + 1 < MAX_STRETCHES {
             begin += if self.stands() {
                 self.pass_rest(begin)
             } else if begin > 0.0 {
@@ -321,9 +327,7 @@ impl<const N: usize> Executor<N> {
         }
         if begin < step {
             // More rests than stretches: it waits at the last one.
-            self.state.rate = Rate { r: 0.0, s: 0.0 };
-            self.free = true;
-            self.place = self.driver.track.get(self.state.at).piece.start();
+            self.stand(begin, step - begin);
         }
         self.note_blocks(before);
         self.finish_step();
@@ -340,7 +344,7 @@ impl<const N: usize> Executor<N> {
         }
         // At full rate nothing changes at either end of a dwell.
         let full = self.state.rate.s.abs() <= 0.0 && (self.state.rate.r.abs() - 1.0).abs() <= 0.0;
-        !(full && self.steady.is_some() && self.goes_on_at_full_rate())
+        !(full && self.goes_on_at_full_rate())
     }
 
     /// Whether the commands ask for the planned motion in the present direction.

@@ -6,6 +6,8 @@
 //! for which `rho^3 r^3 + 3 rho^2 (A / J) r |s| + (V / J) |u| <= 1` and `rho^2 r^2 + (V / A) |s| <= 1` hold at every
 //! instant when they hold at the worst end. Not here: the plan.
 
+use crate::step::sqrt;
+
 /// Rates of the table of stops.
 const RATES: usize = 32;
 
@@ -71,6 +73,8 @@ pub(crate) struct Law {
     rho2: f64,
     rho3: f64,
     ratios: Ratios,
+    /// The factor `k` of the law, 1/s.
+    k: f64,
     step: f64,
     /// Steps to a stop from each rate of the table.
     steps: [f64; RATES + 1],
@@ -85,6 +89,7 @@ impl Law {
             rho2: rho * rho,
             rho3: rho * rho * rho,
             ratios,
+            k: factor(&ratios),
             step,
             steps: [0.0; RATES + 1],
             uses: [0.0; RATES + 1],
@@ -120,6 +125,17 @@ impl Law {
             at = next;
         }
         (f64::INFINITY, f64::INFINITY)
+    }
+
+    /// Largest acceleration by jerk, s: about the time to settle.
+    pub(crate) fn rise(&self) -> f64 {
+        self.ratios.rise
+    }
+
+    /// Largest derivative of the rate that can be settled at a rate whatever the plan does, 1/s.
+    #[inline]
+    pub(crate) fn slope(&self, rate: f64) -> f64 {
+        self.k * (1.0 - self.rho3 * rate * rate * rate).max(0.0)
     }
 
     /// Steps in which a rate that does not change is brought to 0.
@@ -232,6 +248,12 @@ impl Law {
     }
 }
 
+/// The factor `k` of the law, 1/s.
+fn factor(n: &Ratios) -> f64 {
+    let root = sqrt(n.rise * n.rise + 4.0 / 3.0 * n.by_jerk);
+    ((root - n.rise) / (2.0 * n.by_jerk)).min(2.0 / (3.0 * n.by_acceleration))
+}
+
 /// A rate that has come to `c`, exactly.
 #[inline]
 pub(crate) fn snapped(mut at: Rate, c: f64, h: f64) -> Rate {
@@ -296,7 +318,7 @@ mod tests {
         let root = 3.0_f64.sqrt();
         (-(1.0 - q).ln() / 3.0
             + (1.0 + q + q * q).ln() / 6.0
-            + (((2.0 * q + 1.0) / root).atan() - std::f64::consts::FRAC_PI_6) / root)
+            + (((2.0 * q + 1.0) / root).atan() - core::f64::consts::FRAC_PI_6) / root)
             / (k * rho)
     }
 

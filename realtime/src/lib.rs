@@ -4,6 +4,10 @@
 //! planned one to the last bit. It finds the strongest change that velocity, acceleration and jerk of every axis allow, and
 //! promises the longest time to a stop before it is needed. It knows no planner, no program and no clock.
 
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
 mod backup;
 mod commands;
 mod decide;
@@ -13,6 +17,7 @@ mod feeding;
 mod law;
 mod micro_move;
 mod motion;
+mod pose;
 mod rests;
 mod settings;
 mod step;
@@ -23,6 +28,11 @@ pub use commands::{CommandError, Commands, Taken};
 pub use event::Event;
 pub use executor::{Activity, Executor, Tick};
 pub use feeding::FeedError;
-pub use motion::TimeLaw;
+pub use pose::{ExecutedPose, PoseExecutor, PoseSettings};
 pub use settings::{OverrideKind, Settings, SettingsError};
 pub use terms::{Class, Terms};
+
+/// Compiles and runs the code of the guide.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/embedding.md")]
+struct Guide;

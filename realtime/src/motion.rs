@@ -7,25 +7,10 @@
 use crate::law::Rate;
 use crate::step::{State, moved};
 use crate::track::Track;
-use toolglide_kinematics::{Sample, Vector};
+use toolglide_kinematics::{Sample, TimeLaw, Vector};
 
 /// Stretches of a step at most; a step that passes more rests waits at the last one.
 pub(crate) const MAX_STRETCHES: usize = 4;
-
-/// How planned time passes over a stretch of time: `rate` grows by `change`, which grows by `bend`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeLaw {
-    /// How long it lasts, s.
-    pub duration: f64,
-    /// Planned time at its start, s, counted from the first piece.
-    pub planned: f64,
-    /// Planned time by time at its start.
-    pub rate: f64,
-    /// Derivative of the rate at its start, 1/s.
-    pub change: f64,
-    /// Second derivative of the rate, constant, 1/s^2.
-    pub bend: f64,
-}
 
 /// A stretch of a step.
 #[derive(Clone, Copy, Debug)]

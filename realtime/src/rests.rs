@@ -70,13 +70,17 @@ impl<const N: usize> Executor<N> {
         let x = self.state;
         self.looked = self.looked.max(x.at);
         let track = &self.driver.track;
-        let need = self.driver.law.uses_from(x.rate.r.abs().max(0.1))
-            + EARLY_STEPS * self.driver.bounds.step;
+        let (law, backup) = (&self.driver.law, &self.driver.backup);
+        let spare = EARLY_STEPS * self.driver.bounds.step;
+        // Where the law would stop from here, and from the end of the stored way.
+        let least = (x.tau + law.uses_from(x.rate.r.abs().max(0.1)))
+            .max(backup.tau + law.uses_from(backup.rate))
+            + spare;
         while self.looked + 1 < track.next() {
             let (entry, after) = (track.get(self.looked), track.get(self.looked + 1));
             let serves = entry.piece.serves();
             let alone = serves.first == serves.last;
-            if alone && after.piece.serves() != serves && entry.end >= x.tau + need {
+            if alone && after.piece.serves() != serves && entry.end >= least {
                 self.goal = Some(entry.end);
                 break;
             }
@@ -103,6 +107,10 @@ impl<const N: usize> Executor<N> {
             return;
         }
         let left = goal - x.tau;
+        if left < -1e-9 {
+            self.goal = None;
+            return;
+        }
         if left <= 1e-9 {
             self.state.tau = goal;
             return;
@@ -146,11 +154,22 @@ impl<const N: usize> Executor<N> {
             }
             self.state.at -= 1;
         }
-        let entry = self.driver.track.get(self.state.at);
-        if !entry.rests {
+        if !self.driver.track.get(self.state.at).rests {
             return self.leave_rest(begin);
         }
+        let full = (aim.c.abs() - 1.0).abs() <= 0.0;
+        let x = State {
+            rate: Rate { r: 0.0, s: 0.0 },
+            ..self.state
+        };
+        if begin <= 0.0 && full && self.driver.start_rate(&x, &aim) == Some(aim.c) {
+            // At full rate nothing changes at either end of a dwell.
+            self.free = false;
+            self.state.rate = Rate { r: aim.c, s: 0.0 };
+            return self.decide();
+        }
         // A dwell, or what is left of one.
+        let entry = self.driver.track.get(self.state.at);
         let way = if forward {
             entry.end - self.state.tau
         } else {
@@ -190,7 +209,6 @@ impl<const N: usize> Executor<N> {
         };
         self.free = false;
         self.state.rate = Rate { r: rate, s: 0.0 };
-        self.driver.backup.settle_at(rate);
         if begin <= 0.0 {
             return self.decide();
         }
@@ -213,7 +231,7 @@ impl<const N: usize> Executor<N> {
     }
 
     /// Stands still for the rest of the step.
-    fn stand(&mut self, begin: f64, left: f64) -> f64 {
+    pub(crate) fn stand(&mut self, begin: f64, left: f64) -> f64 {
         if !self.free {
             let entry = self.driver.track.get(self.state.at);
             self.rest_at(entry.piece.position_at(self.state.tau - entry.begin));

@@ -485,7 +485,8 @@ fn walk<const N: usize>(
         let rest = if last {
             open
         } else {
-            track.get(neighbour).rests && !full
+            let later = if forward { neighbour } else { at };
+            track.get(later).from_rest && !full
         };
         if rest {
             return Some(Reached {

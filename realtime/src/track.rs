@@ -4,6 +4,8 @@
 //! [`toolglide_kinematics::Sampler`], so that ticks fall on the same instants. Not here: at what rate it passes.
 
 use crate::terms::Terms;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{MoveRange, Piece, Vector};
 
 /// A velocity below this share of its limit is none; the same for acceleration.
@@ -23,6 +25,8 @@ pub(crate) struct Entry<const N: usize> {
     pub(crate) speed: f64,
     /// Whether it stands still throughout.
     pub(crate) rests: bool,
+    /// Whether the plan rests where it begins.
+    pub(crate) from_rest: bool,
     pub(crate) terms: Terms,
     pub(crate) piece: Piece<N>,
 }
@@ -85,6 +89,7 @@ impl<const N: usize> Track<N> {
             j: [0.0; N],
             speed: 0.0,
             rests: true,
+            from_rest: true,
             terms: Terms::default(),
             piece: Piece::new(
                 &toolglide_kinematics::Sample::at_rest(at),
@@ -202,6 +207,7 @@ impl<const N: usize> Track<N> {
             self.first += 1;
             self.rests_at_begin = false;
         }
+        let from_rest = self.rests_at_end;
         self.rests_at_end = self.still(&last.velocity, &last.acceleration);
         let entry = Entry {
             begin,
@@ -211,6 +217,7 @@ impl<const N: usize> Track<N> {
             j,
             speed: toolglide_kinematics::nalgebra::ComplexField::sqrt(speed),
             rests: t > 0.0 && zero(&v) && zero(&a) && zero(&j),
+            from_rest,
             terms,
             piece: *piece,
         };

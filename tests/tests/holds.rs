@@ -7,7 +7,7 @@ use toolglide_optimal::TimeOptimal;
 use toolglide_realtime::{Executor, Settings, Terms};
 use toolglide_smoothing::KinematicSmoothing;
 use toolglide_tests::corpus::{moves, text};
-use toolglide_tests::executed::{EXECUTED_SLACK, ExecutedJudge};
+use toolglide_verify::{EXECUTED_SLACK, ExecutedJudge};
 
 const PLACES: u32 = 60;
 

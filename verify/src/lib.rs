@@ -15,6 +15,7 @@
 //!
 //! Set-points must also be near enough to each other to show all this, see [`Gaps`].
 
+mod executed;
 pub(crate) mod path;
 pub(crate) mod pieces;
 mod poses;
@@ -26,6 +27,7 @@ mod violation;
 #[cfg(test)]
 mod tests;
 
+pub use executed::{EXECUTED_SLACK, ExecutedJudge};
 pub use path::course::{Course, CourseFoot};
 pub use pieces::judge::Judge;
 pub use poses::{

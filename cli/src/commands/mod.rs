@@ -7,6 +7,7 @@ pub(crate) mod machines;
 pub(crate) mod plan;
 pub(crate) mod poses;
 pub(crate) mod reproduce;
+pub(crate) mod run;
 pub(crate) mod score;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

@@ -3,12 +3,13 @@
 //! Not here: how values are read, and what a machine or a program makes of them.
 
 use crate::input::values::{
-    PerAxis, Sweep, coordinates, mode, parameter, per_axis, positive, sweep,
+    PerAxis, Sweep, coordinates, mode, parameter, per_axis, positive, reserve, sweep,
 };
 use crate::methods::METHODS;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use toolglide_kinematics::Reserve;
 use toolglide_machines::ModeConfig;
 use toolglide_optimal::{Effort, Smoothing};
 use toolglide_verify::USUAL_FREQUENCY;
@@ -34,6 +35,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Plan a part program by every method and show them side by side.
     Compare(CompareArgs),
+    /// Execute a part program under an operator's commands: hold, override, resume, reverse, abort.
+    Run(RunArgs),
     /// Hold every method against the time-optimal motion within the same limits and tolerance.
     Score(ScoreArgs),
     /// Read a part program only: what it holds, and all that is wrong with it.
@@ -128,6 +131,10 @@ pub(crate) struct TuningArgs {
     #[arg(long, value_name = "1-9", default_value_t = Effort::DEFAULT.level(),
         value_parser = clap::value_parser!(u8).range(1..=9))]
     pub(crate) effort: u8,
+    /// Share of the limits that the plan leaves to holds and overrides while it is executed, 0 to 0.5 [default: 0; for
+    /// run 0.01].
+    #[arg(long, value_name = "SHARE", value_parser = reserve, allow_hyphen_values = true)]
+    pub(crate) reserve: Option<Reserve>,
     /// How much slower than the fastest motion the method optimal may be to be smoother, percent of the time; 0 for
     /// the fastest.
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * Smoothing::DEFAULT.share(),
@@ -244,6 +251,41 @@ pub(crate) struct PlanArgs {
     /// Write a page about the motion that opens from disk: path in 3-D, charts, program, where the time goes.
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
+}
+
+/// What to execute.
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// The program and the limits.
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    /// How corners are taken [default: kcs].
+    #[arg(long, value_parser = methods())]
+    pub(crate) method: Option<String>,
+    /// What the method is told.
+    #[command(flatten)]
+    pub(crate) tuning: TuningArgs,
+    /// Commands of the operator: a CSV file with the columns t_s, command, value; or random:SEED.
+    #[arg(long, value_name = "FILE.csv|random:SEED")]
+    pub(crate) events: Option<String>,
+    /// Greatest feed override, for which the motion is planned.
+    #[arg(long, value_name = "FACTOR", value_parser = positive, default_value_t = 2.0, allow_hyphen_values = true)]
+    pub(crate) max_override: f64,
+    /// Let the feed override slow down everything alike instead of capping the feedrate.
+    #[arg(long)]
+    pub(crate) uniform: bool,
+    /// Time between two ticks, s [default: that of the machine].
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    pub(crate) period: Option<f64>,
+    /// Write the executed set-points as CSV to a file; - is standard output.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Write the rate of planned time and the state of the executor behind the axes of every set-point.
+    #[arg(long)]
+    pub(crate) rate: bool,
+    /// Draw the executed motion with the commands; the ending decides between .svg and .png.
+    #[arg(long, value_name = "FILE.svg|.png")]
+    pub(crate) plot: Option<PathBuf>,
 }
 
 /// What to compare.

@@ -3,6 +3,7 @@
 //! Source: every quantity is positive and finite unless it is a coordinate. Not here: what may be
 //! asked for.
 
+use toolglide_kinematics::Reserve;
 use toolglide_machines::ModeConfig;
 
 /// One number for all axes, or one for each.
@@ -30,6 +31,11 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     } else {
         Err(format!("{value} is not positive"))
     }
+}
+
+/// A share of the limits that a plan leaves alone.
+pub(crate) fn reserve(text: &str) -> Result<Reserve, String> {
+    Reserve::new(number(text)?).map_err(|reason| reason.to_string())
 }
 
 /// Positive numbers between commas.

@@ -77,16 +77,31 @@ pub(crate) struct PlanFiles {
 impl PlanFiles {
     /// Begins the files of a run, none of which may be another of them.
     pub(crate) fn begin(args: &PlanArgs) -> Result<Self, CliError> {
-        let to_stdout = args.output.as_deref() == Some(Path::new("-"));
-        if to_stdout && args.job.json {
+        Self::begin_for(
+            args.output.as_deref(),
+            args.plot.as_deref(),
+            args.report.as_deref(),
+            &args.job,
+        )
+    }
+
+    /// The same from what was asked for, each by itself.
+    pub(crate) fn begin_for(
+        output: Option<&Path>,
+        plot: Option<&Path>,
+        page: Option<&Path>,
+        job: &JobArgs,
+    ) -> Result<Self, CliError> {
+        let to_stdout = output == Some(Path::new("-"));
+        if to_stdout && job.json {
             return Err(CliError::Option {
                 option: "--json",
                 value: "with -o -".to_owned(),
                 bound: "only one of them can have standard output".to_owned(),
             });
         }
-        let rows = args.output.as_deref().filter(|_| !to_stdout);
-        if let (Some(rows), Some(plot)) = (rows, args.plot.as_deref())
+        let rows = output.filter(|_| !to_stdout);
+        if let (Some(rows), Some(plot)) = (rows, plot)
             && same_file(rows, plot)
         {
             return Err(CliError::Option {
@@ -95,8 +110,8 @@ impl PlanFiles {
                 bound: "the set-points are written there".to_owned(),
             });
         }
-        if let Some(page) = args.report.as_deref() {
-            for other in [rows, args.plot.as_deref()].into_iter().flatten() {
+        if let Some(page) = page {
+            for other in [rows, plot].into_iter().flatten() {
                 if same_file(page, other) {
                     return Err(CliError::Option {
                         option: "--report",
@@ -109,12 +124,12 @@ impl PlanFiles {
         Ok(Self {
             rows: RowsFile {
                 file: rows
-                    .map(|path| OutputFile::begin(path, &inputs(&args.job)))
+                    .map(|path| OutputFile::begin(path, &inputs(job)))
                     .transpose()?,
                 to_stdout,
             },
-            drawing: Drawing::begin(args.plot.as_deref(), &args.job)?,
-            page: PageFile::begin(args.report.as_deref(), &args.job)?,
+            drawing: Drawing::begin(plot, job)?,
+            page: PageFile::begin(page, job)?,
         })
     }
 

@@ -10,6 +10,7 @@ mod contrast;
 mod corner;
 pub(crate) mod curve;
 pub(crate) mod envelope;
+mod executed;
 mod feeds;
 mod motion;
 mod path;
@@ -28,6 +29,7 @@ use toolglide_kinematics::{Limits, Move, Piece, Sample, Vector};
 use trace::Trace;
 
 pub(crate) use contrast::Contrast;
+pub(crate) use executed::ExecutedPlot;
 pub(crate) use feeds::Feeds;
 pub(crate) use picture::Picture;
 pub(crate) use sheet::Caption;

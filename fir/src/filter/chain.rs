@@ -6,6 +6,8 @@
 use crate::error::FirError;
 use toolglide_kinematics::SamplePeriod;
 use toolglide_kinematics::nalgebra::Complex;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Most filters in a chain: a chain of eight has 256 corners in its response, and each filter more
 /// doubles them.
@@ -37,7 +39,7 @@ const NO_EFFECT: f64 = 1e-8;
 /// use toolglide_fir::FilterChain;
 /// let chain = FilterChain::with_time_constants(&[0.06, 0.1])?;
 /// assert_eq!(chain.time_constants(), [0.1, 0.06]);
-/// assert!(chain.gain(std::f64::consts::TAU * 10.0).abs() < 1e-15, "10 Hz is a notch");
+/// assert!(chain.gain(core::f64::consts::TAU * 10.0).abs() < 1e-15, "10 Hz is a notch");
 /// # Ok::<(), toolglide_fir::FirError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -187,7 +189,7 @@ impl FilterChain {
             .iter()
             .map(|&length| {
                 let z = s * length;
-                if z.norm() < NO_EFFECT {
+                if z.re.hypot(z.im) < NO_EFFECT {
                     Complex::new(1.0, 0.0) - z * 0.5
                 } else {
                     (Complex::new(1.0, 0.0) - (-z).exp()) / z
@@ -200,7 +202,7 @@ impl FilterChain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
+    use core::f64::consts::TAU;
 
     #[test]
     fn lengths_that_are_no_lengths_are_refused_with_their_value() {

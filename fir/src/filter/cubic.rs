@@ -8,6 +8,8 @@
 
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Teeth of the comb: the third filter and those after it differ from it in position by the square
 /// of a tooth times the acceleration over 24, a tenth of a micrometre where parts are machined.

@@ -5,6 +5,8 @@
 
 use crate::filter::chain::FilterChain;
 use toolglide_kinematics::nalgebra::Complex;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Relative precision of the inverse, dimensionless: a few roundings.
 const INVERSE_PRECISION: f64 = 4.0 * f64::EPSILON;
@@ -218,7 +220,7 @@ fn rotation_integral(time: f64, w: Complex<f64>, order: usize) -> Complex<f64> {
     let z = w * time;
     let mut term = Complex::new(1.0, 0.0);
     let mut index = 0.0;
-    if z.norm() < SERIES_ANGLE {
+    if z.re.hypot(z.im) < SERIES_ANGLE {
         for _ in 0..order {
             index += 1.0;
             term *= time / index;

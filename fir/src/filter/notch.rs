@@ -5,6 +5,8 @@
 
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{Mode, SamplePeriod};
 
 impl FilterChain {
@@ -17,7 +19,7 @@ impl FilterChain {
     #[must_use]
     pub fn residual(&self, mode: &Mode) -> f64 {
         (-mode.damping() * mode.natural() * self.total_delay()).exp()
-            * self.transfer(mode.pole()).norm()
+            * modulus(self.transfer(mode.pole()))
     }
 
     /// A chain with one notch on each mode and as many further filters as are given.
@@ -61,6 +63,11 @@ impl FilterChain {
         time_constants.extend_from_slice(further);
         Self::with_time_constants(&time_constants)?.rounded_to(period)
     }
+}
+
+/// Modulus of a complex number, also where there is no standard library.
+fn modulus(z: toolglide_kinematics::nalgebra::Complex<f64>) -> f64 {
+    z.re.hypot(z.im)
 }
 
 #[cfg(test)]

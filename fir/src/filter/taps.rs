@@ -6,6 +6,8 @@
 use crate::filter::cubic::CubicChain;
 use crate::lookahead::queue::Queue;
 use toolglide_kinematics::Vector;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Instants nearer than this are one, s: far below any period and above the rounding of times of some
 /// minutes.

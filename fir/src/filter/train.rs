@@ -7,6 +7,8 @@
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
 use toolglide_kinematics::nalgebra::Complex;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{Arc, Vector};
 
 /// A line or an arc at constant commanded feedrate.

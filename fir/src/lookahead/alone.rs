@@ -115,7 +115,7 @@ impl<const N: usize> LookAhead<N> {
         (self.fixed, self.underway) = (0, false);
         self.choose();
         let takes = self.lasts() + self.chain.total() - chain.total();
-        std::mem::swap(&mut self.pulses, &mut self.going_on);
+        core::mem::swap(&mut self.pulses, &mut self.going_on);
         (self.fixed, self.planned, self.underway) = kept;
         (self.capped, self.planned_capped) = capped;
         self.use_chain(chain);

@@ -6,6 +6,8 @@
 use crate::chords::Chords;
 use crate::filter::cubic::CubicChain;
 use crate::lookahead::circle_feed::angular_velocity;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::{Arc, Vector, largest_multiple};
 
 /// By how much the bound may exceed the tolerance in the middle of an arc, where it is larger than the
@@ -65,7 +67,7 @@ impl<const N: usize> ArcFeed<N> {
         }
         let mut angular = slow * STEADY_EXCESS.sqrt();
         if tolerance < radius {
-            let most = angular.min(std::f64::consts::TAU / chain.long());
+            let most = angular.min(core::f64::consts::TAU / chain.long());
             let share = tolerance / radius;
             angular = angular_velocity(|w| chain.gain(w), share, slow, most);
         }

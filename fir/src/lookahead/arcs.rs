@@ -5,7 +5,7 @@
 use crate::chords::Shape;
 use crate::filter::cubic::CubicChain;
 use crate::lookahead::arc_feed::ArcFeed;
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
 use toolglide_kinematics::Vector;
 
 #[derive(Clone, Copy, Debug)]

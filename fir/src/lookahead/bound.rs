@@ -11,6 +11,8 @@
 use crate::filter::cubic::CubicChain;
 use crate::pulse::{NEARLY, Pulse};
 use toolglide_kinematics::Vector;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Most steps in the search of the instant; Newton needs three or four.
 const STEPS: u32 = 40;

@@ -6,6 +6,8 @@
 
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Most steps towards the root; some ten are enough.
 const STEPS: u32 = 60;
@@ -46,7 +48,7 @@ pub fn largest_circle_feed(
     if tolerance >= radius {
         return Err(FirError::ToleranceAboveRadius { tolerance, radius });
     }
-    let notch = std::f64::consts::TAU / chain.time_constants()[0];
+    let notch = core::f64::consts::TAU / chain.time_constants()[0];
     let start = (2.0 * tolerance / (radius * chain.variance())).sqrt();
     Ok(radius * angular_velocity(|w| chain.gain(w), tolerance / radius, start, notch))
 }

@@ -7,6 +7,8 @@ use super::{AIM, LookAhead};
 use crate::lookahead::arc_feed::turning_feed;
 use crate::pulse::Pulse;
 use toolglide_kinematics::largest_multiple;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Turns `|t2 - t1|` above this are never passed by slowing down: 2 sin 15°.
 const SHARP: f64 = 0.517_638_090_205_041_5;

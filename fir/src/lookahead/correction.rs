@@ -6,6 +6,8 @@
 //! here: the first choice of both.
 
 use super::{AIM, LookAhead};
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::numeric::LIMIT_SLACK;
 
 /// Corners that contribute less than this share of the tolerance are left as they are.

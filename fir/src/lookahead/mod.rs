@@ -8,6 +8,9 @@
 //! Source: section 4.3; the bound over the whole window and what is done about it are ours. Not here:
 //! the bound itself.
 
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
+
 mod alone;
 pub(crate) mod arc_feed;
 pub(crate) mod arcs;

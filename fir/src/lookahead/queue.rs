@@ -2,6 +2,9 @@
 //!
 //! Source: none. Not here: what waits.
 
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
+
 /// Items that are gone before the others move up.
 const GONE: usize = 32;
 

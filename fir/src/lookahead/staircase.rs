@@ -73,7 +73,7 @@ impl<const N: usize> LookAhead<N> {
         self.times
             .resize(first, (f64::NEG_INFINITY, f64::NEG_INFINITY));
         // What comes after the first cut.
-        let mut rest = std::mem::take(&mut self.cuts);
+        let mut rest = core::mem::take(&mut self.cuts);
         rest.clear();
         let mut cut = None;
         for index in first..count {
@@ -185,7 +185,7 @@ impl<const N: usize> LookAhead<N> {
         let mut until = 0.0;
         self.times.clear();
         // What comes before the last cut and after it, the last pulse first.
-        let mut done = std::mem::take(&mut self.cuts);
+        let mut done = core::mem::take(&mut self.cuts);
         done.clear();
         let mut cut = false;
         for index in (self.fixed..count).rev() {

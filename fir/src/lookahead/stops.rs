@@ -32,7 +32,7 @@ impl<const N: usize> LookAhead<N> {
         }
         self.kept.clear();
         self.kept.extend_from_slice(&self.pulses);
-        let capped = std::mem::replace(&mut self.capped, false);
+        let capped = core::mem::replace(&mut self.capped, false);
         // Behind the first stop nothing is left of the plan, before it as little as may be.
         let stop = (first..last).find(|&index| is_corner(&self.pulses[index]));
         for from in [self.fixed, stop.map_or(last, |corner| corner + 1)] {
@@ -50,7 +50,7 @@ impl<const N: usize> LookAhead<N> {
                 return true;
             }
         }
-        std::mem::swap(&mut self.pulses, &mut self.kept);
+        core::mem::swap(&mut self.pulses, &mut self.kept);
         self.capped = capped;
         self.time();
         false

@@ -75,7 +75,7 @@ impl<const N: usize> LookAhead<N> {
             let takes = self.try_design(design, best);
             if number == 0 || takes < best {
                 (best, best_design, best_capped) = (takes, design, self.planned_capped);
-                std::mem::swap(&mut self.pulses, &mut self.best);
+                core::mem::swap(&mut self.pulses, &mut self.best);
                 worse = 0;
             } else {
                 worse += 1;
@@ -86,7 +86,7 @@ impl<const N: usize> LookAhead<N> {
             }
             design *= 0.5;
         }
-        std::mem::swap(&mut self.pulses, &mut self.best);
+        core::mem::swap(&mut self.pulses, &mut self.best);
         if worse > 0 {
             self.use_chain(designed_for(&self.limits, best_design));
             self.planned = self.pulses.len();

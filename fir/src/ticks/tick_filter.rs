@@ -9,8 +9,10 @@
 use crate::error::FirError;
 use crate::filter::chain::FilterChain;
 use crate::ticks::tick_pulse::TICK_ROUNDING;
-use std::ops::{AddAssign, Mul, Sub};
+use core::ops::{AddAssign, Mul, Sub};
 use toolglide_kinematics::SamplePeriod;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// Largest position, units: a kilometre in nm. Commands beyond it are held there.
 const MAX_UNITS: i64 = 1 << 40;
@@ -215,7 +217,7 @@ where
     fn tick(&mut self, command: [T; N]) -> [T; N] {
         let mut newer = command;
         for held in &mut self.recent {
-            std::mem::swap(held, &mut newer);
+            core::mem::swap(held, &mut newer);
         }
         let mut value = weighted(&self.weights, &self.recent);
         for stage in &mut self.stages {

@@ -5,6 +5,8 @@
 
 use crate::error::FirError;
 use toolglide_kinematics::SamplePeriod;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 
 /// A duration may exceed a whole number of ticks by this share of a tick without taking another one.
 pub(crate) const TICK_ROUNDING: f64 = 1e-9;
@@ -56,7 +58,7 @@ impl<const N: usize> TickPulse<N> {
         }
         Ok(Self {
             from,
-            by: std::array::from_fn(|axis| to[axis].wrapping_sub(from[axis])),
+            by: core::array::from_fn(|axis| to[axis].wrapping_sub(from[axis])),
             ticks: ticks as u32,
             tick: 0,
         })
@@ -76,7 +78,7 @@ impl<const N: usize> Iterator for TickPulse<N> {
         }
         self.tick += 1;
         let (tick, ticks) = (i128::from(self.tick), i128::from(self.ticks));
-        Some(std::array::from_fn(|axis| {
+        Some(core::array::from_fn(|axis| {
             let passed = (i128::from(self.by[axis]) * tick).div_euclid(ticks);
             self.from[axis].wrapping_add(passed as i64)
         }))

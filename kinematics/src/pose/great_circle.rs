@@ -5,6 +5,8 @@
 //! neither a small angle nor one near 180 degrees loses digits. Not here: time.
 
 use crate::error::ToolpathError;
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::numeric::{OPPOSITE_ANGLE, SAME_ORIENTATION};
 use crate::pose::tool_pose::ToolPose;
 use crate::vector::Vector;
@@ -48,7 +50,7 @@ impl GreatCircle {
     /// let up = ToolPose::new(Vector::zeros(), Vector::<3>::z())?;
     /// let side = ToolPose::new(Vector::zeros(), Vector::<3>::x())?;
     /// let turn = GreatCircle::between(&up, &side)?;
-    /// assert!((turn.angle() - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    /// assert!((turn.angle() - core::f64::consts::FRAC_PI_2).abs() < 1e-15);
     /// assert_eq!(turn.axis(), Vector::<3>::y());
     /// # Ok::<(), toolglide_kinematics::ToolpathError>(())
     /// ```
@@ -57,7 +59,7 @@ impl GreatCircle {
         let normal = start.cross(&end);
         let sine = normal.norm();
         let angle = sine.atan2(start.dot(&end));
-        if std::f64::consts::PI - angle < OPPOSITE_ANGLE {
+        if core::f64::consts::PI - angle < OPPOSITE_ANGLE {
             return Err(ToolpathError::Opposite { angle });
         }
         let (axis, angle) = if angle < SAME_ORIENTATION {
@@ -87,7 +89,7 @@ impl GreatCircle {
     ) -> Result<Self, ToolpathError> {
         let (start, end) = (start.orientation(), end.orientation());
         let angle = angle_between(&start, &end);
-        if std::f64::consts::PI - angle >= OPPOSITE_ANGLE {
+        if core::f64::consts::PI - angle >= OPPOSITE_ANGLE {
             return Err(ToolpathError::NotOpposite { angle });
         }
         let across = axis - start * start.dot(axis);
@@ -99,7 +101,7 @@ impl GreatCircle {
             start,
             end,
             axis: across / length,
-            angle: std::f64::consts::PI,
+            angle: core::f64::consts::PI,
         })
     }
 

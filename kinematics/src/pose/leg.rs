@@ -6,6 +6,8 @@
 use crate::axis_vector::AxisVector;
 use crate::error::ToolpathError;
 use crate::machine::{Axis, AxisKind};
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::numeric::SHORTEST_LENGTH;
 use crate::pose::great_circle::GreatCircle;
 use crate::pose::moves::PoseFeed;

@@ -6,6 +6,8 @@
 
 use crate::axis_vector::AxisVector;
 use crate::machine::{KinematicsError, MachineKinematics};
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use crate::piece::MoveRange;
 use crate::pose::great_circle::turned;
 use crate::pose::tool_pose::ToolPose;

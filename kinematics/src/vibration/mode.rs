@@ -2,8 +2,10 @@
 //!
 //! Source: section 4.2.2. Not here: its motion, see [`Resonator`](super::Resonator).
 
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
+use core::f64::consts::TAU;
 use nalgebra::Complex;
-use std::f64::consts::TAU;
 use thiserror::Error;
 
 /// Why a mode is none.

@@ -5,6 +5,8 @@
 //! of the acceleration at its frequency. Not here: the motion.
 
 use super::{Mode, ModeError};
+#[cfg(not(feature = "std"))]
+use crate::no_std::*;
 use nalgebra::Complex;
 
 /// Arguments below this are summed as a series, dimensionless: above it the closed form loses fewer
@@ -57,7 +59,7 @@ impl Resonator {
     pub fn pass(&mut self, acceleration: f64, jerk: f64, duration: f64) {
         let z = self.pole * duration;
         let decay = z.exp();
-        let (constant, linear) = if z.norm() < SERIES {
+        let (constant, linear) = if z.re.hypot(z.im) < SERIES {
             integrals(z)
         } else {
             let one = Complex::new(1.0, 0.0);
@@ -89,7 +91,7 @@ impl Resonator {
     /// Amplitude of the free oscillation from now on, mm, before it decays.
     #[must_use]
     pub fn displacement(&self) -> f64 {
-        self.state.norm() / self.pole.im
+        self.state.re.hypot(self.state.im) / self.pole.im
     }
 
     /// The same as an acceleration, mm/s².
@@ -102,7 +104,7 @@ impl Resonator {
     /// oscillator without damping.
     #[must_use]
     pub fn spectrum(&self) -> f64 {
-        self.state.norm()
+        self.state.re.hypot(self.state.im)
     }
 }
 
@@ -122,7 +124,7 @@ fn integrals(z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
+    use core::f64::consts::TAU;
 
     #[test]
     fn it_agrees_with_small_steps_of_the_differential_equation() {

@@ -53,15 +53,15 @@ impl Transition {
     #[must_use]
     pub fn after(&self, state: &ModeState, acceleration: f64, jerk: f64) -> ModeState {
         let all = self.extended(state, acceleration, jerk);
-        std::array::from_fn(|row| product(&self.step[row], &all))
+        core::array::from_fn(|row| product(&self.step[row], &all))
     }
 
     /// How the state after the interval changes with its duration, 1/s, where the jerk stays.
     #[must_use]
     pub fn by_duration(&self, state: &ModeState, acceleration: f64, jerk: f64) -> ModeState {
         let all = self.extended(state, acceleration, jerk);
-        let after: [f64; ALL] = std::array::from_fn(|row| product(&self.step[row], &all));
-        std::array::from_fn(|row| self.natural * product(&self.generator[row], &after))
+        let after: [f64; ALL] = core::array::from_fn(|row| product(&self.step[row], &all));
+        core::array::from_fn(|row| self.natural * product(&self.generator[row], &after))
     }
 
     /// A functional of the state after the interval, as one of the state before it, of the acceleration before it, and
@@ -76,7 +76,7 @@ impl Transition {
                 .sum()
         };
         (
-            std::array::from_fn(column),
+            core::array::from_fn(column),
             column(4),
             column(5) / self.natural,
         )
@@ -131,8 +131,9 @@ fn exponential(generator: &Matrix, argument: f64) -> Matrix {
         small *= 0.5;
         halvings += 1;
     }
-    let mut power: Matrix =
-        std::array::from_fn(|row| std::array::from_fn(|column| f64::from(u8::from(row == column))));
+    let mut power: Matrix = core::array::from_fn(|row| {
+        core::array::from_fn(|column| f64::from(u8::from(row == column)))
+    });
     let mut sum = power;
     for term in 1..=TERMS {
         power = times(&power, generator);

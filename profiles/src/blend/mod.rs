@@ -10,7 +10,7 @@ mod unroll;
 pub use shape::{BlendPhase, BlendShape, MAX_PHASES};
 pub use unroll::Part;
 
-use std::fmt::Debug;
+use core::fmt::Debug;
 use thiserror::Error;
 use toolglide_kinematics::Corner;
 

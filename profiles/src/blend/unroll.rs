@@ -6,6 +6,8 @@
 use crate::blend::{BlendPhase, BlendShape};
 use crate::phase::{Phase, integrate};
 use crate::profile::State;
+#[cfg(not(feature = "std"))]
+use toolglide_kinematics::no_std::*;
 use toolglide_kinematics::numeric::SEARCH_PRECISION;
 use toolglide_kinematics::{Corner, MoveRange, Piece, Sample, Vector};
 

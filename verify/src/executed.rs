@@ -4,8 +4,8 @@
 //! and bounds their derivatives by Bernstein coefficients, cut in halves until the bound is sharp. It shares no formula
 //! with the executor.
 
-use toolglide_kinematics::{Limits, Piece, Vector};
-use toolglide_realtime::TimeLaw;
+use std::collections::VecDeque;
+use toolglide_kinematics::{Limits, Piece, TimeLaw, Vector};
 
 /// What executed motion may exceed a limit by, as a share.
 pub const EXECUTED_SLACK: f64 = 1e-9;
@@ -17,7 +17,7 @@ type Polynomial = Vec<f64>;
 #[derive(Clone, Debug)]
 pub struct ExecutedJudge<const N: usize> {
     limits: Limits<N>,
-    pieces: Vec<(f64, Piece<N>)>,
+    pieces: VecDeque<(f64, Piece<N>)>,
     end: f64,
     /// Index of the piece looked at last.
     near: usize,
@@ -34,7 +34,7 @@ impl<const N: usize> ExecutedJudge<N> {
     pub fn new(limits: Limits<N>) -> Self {
         Self {
             limits,
-            pieces: Vec::new(),
+            pieces: VecDeque::new(),
             end: 0.0,
             near: 0,
             planned: 0.0,
@@ -46,7 +46,7 @@ impl<const N: usize> ExecutedJudge<N> {
     /// Takes the planned piece that follows.
     pub fn expect(&mut self, piece: &Piece<N>) {
         if piece.duration() > 0.0 {
-            self.pieces.push((self.end, *piece));
+            self.pieces.push_back((self.end, *piece));
         }
         self.end += piece.duration();
     }
@@ -54,6 +54,14 @@ impl<const N: usize> ExecutedJudge<N> {
     /// Begins in the middle of the motion, at a planned time.
     pub fn begin_at(&mut self, planned: f64) {
         self.planned = planned;
+    }
+
+    /// Forgets the pieces that end before a planned time.
+    pub fn forget(&mut self, planned: f64) {
+        while self.pieces.get(1).is_some_and(|next| next.0 < planned) {
+            self.pieces.pop_front();
+            self.near = self.near.saturating_sub(1);
+        }
     }
 
     /// The planned time seen last, s.
@@ -72,7 +80,10 @@ impl<const N: usize> ExecutedJudge<N> {
 
     /// Takes a stretch of executed motion.
     pub fn observe(&mut self, law: &TimeLaw) {
-        self.gap = self.gap.max((law.planned - self.planned).abs());
+        let stands = law.rate.abs() <= 0.0 && law.change.abs() <= 0.0 && law.bend.abs() <= 0.0;
+        if !stands {
+            self.gap = self.gap.max((law.planned - self.planned).abs());
+        }
         let t = law.duration;
         // Planned time as a polynomial of a time from 0 to 1.
         let tau = [
