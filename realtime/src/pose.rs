@@ -147,6 +147,10 @@ impl PoseExecutor {
     ///
     /// # Errors
     /// The piece, while as many are ahead as there is room for.
+    #[allow(
+        clippy::result_large_err,
+        reason = "the piece is given back without allocation"
+    )]
     pub fn feed(&mut self, piece: PosePiece) -> Result<(), PosePiece> {
         if self.pieces.len() - self.at > self.room || self.commands.is_aborted() {
             return Err(piece);

@@ -5,9 +5,6 @@
 //! between 0 and 1 keep it, too: of equal signs the larger counts, of opposite signs both become smaller. So the rate may
 //! jump at every tick. Staircases of feedrate are excepted: there a rest is not nearby. Not here: the filters.
 
-#[cfg(not(feature = "std"))]
-use toolglide_kinematics::no_std::*;
-
 /// The clock of commanded positions: it takes the next one of them when its time has come.
 ///
 /// Time passes at a rate from 0 to [`TickClock::FULL`], which may be another one at every tick. At full rate the positions
