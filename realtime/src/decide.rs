@@ -204,6 +204,7 @@ impl<const N: usize> Driver<N> {
             self.lawful = false;
             self.share = SMALLEST;
         }
+        let share = self.share;
         let gap = aim.c - x.rate.r;
         if gap.abs() <= 0.0 && x.rate.s.abs() <= 0.0 {
             if self.ground(&aim.caps, wanted, x).goes_on(x) {
@@ -221,17 +222,23 @@ impl<const N: usize> Driver<N> {
                 self.proven = aim.caps;
                 return Some(found);
             }
-            if lower {
-                let proven = self.proven;
-                let safe = self.safe_rate(x, &proven, aim.c);
-                // Anything slower than the way that is stored.
-                let slower = Aim {
-                    c: wanted.0.min(x.rate.r.abs()).copysign(x.rate.r),
-                    ..*aim
-                };
-                if let Some(found) = self.toward(x, &slower, &proven, safe) {
-                    return Some(found);
-                }
+        }
+        if lower {
+            let proven = self.proven;
+            let safe = self.safe_rate(x, &proven, aim.c);
+            // Anything slower than the way that is stored; the search begins where it left off.
+            self.share = share;
+            let r = x.rate.r;
+            let slower = Aim {
+                c: if aim.c * r > 0.0 {
+                    aim.c.abs().min(wanted.0).min(r.abs()).copysign(r)
+                } else {
+                    0.0
+                },
+                ..*aim
+            };
+            if let Some(found) = self.toward(x, &slower, &proven, safe) {
+                return Some(found);
             }
         }
         if self.backup.next().is_some() {
