@@ -402,7 +402,7 @@ fn a_machine_or_a_tool_table_that_is_no_file_of_text_is_named_as_what_it_is() {
             refused(&folder, &program, &[option, "/dev/zero"], reason);
         }
     }
-    let bytes = folder.write("bytes.tbl", &"\0".repeat(100_000));
+    let bytes = folder.write("bytes.tbl", "\0".repeat(100_000));
     let run = toolglide(&["plan", &program, "--tool-table", &bytes]);
     assert_eq!(run.code, 2, "{}", run.out);
     assert!(
