@@ -70,18 +70,20 @@ fn the_local_rule_uses_the_tolerance_of_one_corner_and_no_more() {
 
 #[test]
 fn where_corners_are_dense_the_local_rule_breaks_the_tolerance() {
-    let points: Vec<[f64; 2]> = (0..40)
-        .map(|k| f64::from(k) * 0.25)
-        .map(|turn| [4.0 * turn.sin(), 4.0 * (1.0 - turn.cos())])
+    // Turns of 10 degrees every 0.5 mm: each is overlapped as if the filters had forgotten the one before.
+    let mut at = [0.0, 0.0];
+    let points: Vec<[f64; 2]> = (0..24)
+        .map(|k| {
+            let angle = (10.0 * f64::from(k)).to_radians();
+            let here = at;
+            at = [at[0] + 0.5 * angle.cos(), at[1] + 0.5 * angle.sin()];
+            here
+        })
         .collect();
-    let dense = path(&points, 0.01);
+    let dense = path(&points, 0.2);
     let free = Limits::uniform(500.0, 1e5, 1e8).unwrap();
     let report = verify(&overlapped(&dense), &dense, &free);
-    assert!(
-        report.deviation_ratio.value > 1.05,
-        "{:?}",
-        report.deviation
-    );
+    assert!(report.deviation_ratio.value > 2.0, "{:?}", report.deviation);
 }
 
 #[test]

@@ -25,6 +25,20 @@ pub struct MethodName {
     pub summary: &'static str,
 }
 
+impl MethodName {
+    /// Whether its motion keeps every limit; the baselines of the text do not.
+    #[must_use]
+    pub fn keeps_limits(&self) -> bool {
+        !is_baseline(self.name)
+    }
+
+    /// Whether it runs only where it is named: it is too slow, or keeps no limits.
+    #[must_use]
+    pub fn must_be_named(&self) -> bool {
+        self.name == REFERENCE || !self.keeps_limits()
+    }
+}
+
 /// All methods, the default first.
 pub const METHODS: &[MethodName] = &[
     MethodName {
@@ -256,7 +270,7 @@ pub(crate) fn chosen(asked: &[String]) -> Vec<String> {
     if asked.is_empty() {
         return METHODS
             .iter()
-            .filter(|method| method.name != REFERENCE && !is_baseline(method.name))
+            .filter(|method| !method.must_be_named())
             .map(|method| method.name.to_owned())
             .collect();
     }

@@ -30,7 +30,10 @@ fn spoiled(csv: &str, row: usize, column: usize, change: impl Fn(f64) -> f64) ->
 
 #[test]
 fn the_set_points_of_every_method_and_period_pass() {
-    for method in toolglide_cli::METHODS {
+    for method in toolglide_cli::METHODS
+        .iter()
+        .filter(|method| method.keeps_limits())
+    {
         for period in ["0.001", "0.0004", "0.01"] {
             let (_folder, program, output) =
                 planned(&["--method", method.name, "--period", period]);

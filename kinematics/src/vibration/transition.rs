@@ -200,8 +200,10 @@ mod tests {
         let at = |share: f64| through(&Mode::new(25.0, 0.02).unwrap().detuned(share).unwrap(), 1.0);
         let step = 1e-5;
         let [low, middle, high] = [1.0 - step, 1.0, 1.0 + step].map(at);
-        // The scale goes with the frequency: x = E / w², so that w dE/dw at a fixed scale is asked for.
-        let difference = (high[0] - low[0]) / (2.0 * step);
+        // The deflection is E / w², whose scale goes with the frequency: the derivative is that at a fixed scale.
+        let deflection = |state: &ModeState, share: f64| state[0] / (share * share);
+        let difference =
+            (deflection(&high, 1.0 + step) - deflection(&low, 1.0 - step)) / (2.0 * step);
         assert!(
             (difference - middle[2]).abs() < 1e-6 * middle[2].abs().max(1.0),
             "{difference} against {}",

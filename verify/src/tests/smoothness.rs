@@ -54,7 +54,7 @@ fn a_mode_whose_period_is_one_piece_is_left_at_rest_and_others_are_not() {
     // The spectrum of such a motion has a zero where a piece is one period.
     let quiet = judge(4e4, 0.04, 25.0);
     assert!(quiet.modes[0].left < 1e-9, "{quiet:?}");
-    assert!(quiet.modes[0].left_worst > 1e-3, "{quiet:?}");
+    assert!(quiet.modes[0].left_worst > 5e-4, "{quiet:?}");
     assert!(quiet.modes[0].peak > 0.5 * quiet.modes[0].bend, "{quiet:?}");
     let loud = judge(4e4, 0.04, 17.0);
     assert!(loud.modes[0].left > 1e-3, "{loud:?}");
