@@ -10,12 +10,12 @@ mod clarabel;
 mod common;
 
 use clarabel::Conic;
-use common::{Failing, run};
+use common::{Failing, run, run_with};
 use toolglide_kinematics::{
     AxisLimits, Feedrate, Limits, MotionPlanner, Move, Plan, Tolerance, Toolpath, Trajectory,
     Vector,
 };
-use toolglide_optimal::{ScpSolver, Settings, TimeOptimal, plan_with};
+use toolglide_optimal::{ScpSolver, Settings, Smoothing, TimeOptimal, plan_with};
 use toolglide_verify::verify;
 
 fn judged<const N: usize>(points: &[Vector<N>], tolerance: f64, limits: Limits<N>) -> Plan<N> {
@@ -77,8 +77,9 @@ fn the_middle_of_long_moves_takes_no_windows_and_the_faster_motion_may_change_th
         Toolpath::from_points(&points, feedrate, Tolerance::new(0.05).unwrap()).unwrap()
     };
     let (near, far) = (square(40.0), square(4000.0));
-    let (short, few) = run(ScpSolver::new(), &near, limits);
-    let (long, many) = run(ScpSolver::new(), &far, limits);
+    let fastest = Settings::new(limits).with_smoothing(Smoothing::NONE);
+    let (short, few) = run_with(ScpSolver::new(), &near, &fastest);
+    let (long, many) = run_with(ScpSolver::new(), &far, &fastest);
     for (plan, path) in [(&short, &near), (&long, &far)] {
         let report = verify(plan, path, &limits);
         assert!(report.passes(), "{:#?}", report.examples);
@@ -91,6 +92,14 @@ fn the_middle_of_long_moves_takes_no_windows_and_the_faster_motion_may_change_th
     assert!(
         (apart - straight).abs() < 1e-6,
         "{apart} s for {straight} s"
+    );
+    // Who may be slower by a share of a stretch takes the motion with less jerk around the corners of long ones.
+    let smoother = Settings::new(limits);
+    let (longer, _) = run_with(ScpSolver::new(), &far, &smoother);
+    let given = longer.duration() / long.duration() - 1.0;
+    assert!(
+        given > 1e-4 && given <= smoother.smoothing.indifference(),
+        "{given}"
     );
     let settings = toolglide_smoothing::Settings::new(limits);
     let smoothed = toolglide_smoothing::plan(&near, &settings).unwrap();
@@ -198,9 +207,12 @@ fn when_pieces_are_pulled_makes_no_difference() {
         Tolerance::new(0.05).unwrap(),
     )
     .unwrap();
-    let (plan, tally) = run(ScpSolver::new(), &path, limits);
+    // The planner brings a solver that looks for the least jerk.
+    let settings = Settings::new(limits);
+    let solver = ScpSolver::new().with_smoothing(settings.smoothing);
+    let (plan, tally) = run_with(solver, &path, &settings);
     assert!(tally.windows > 3, "{tally:?}");
-    let mut planner = TimeOptimal::<2>::new(path.start(), &Settings::new(limits));
+    let mut planner = TimeOptimal::<2>::new(path.start(), &settings);
     for step in path.moves() {
         planner.push(step).unwrap();
     }

@@ -42,13 +42,22 @@ impl Failing {
     }
 }
 
-/// Plans a path with a solver, and has it judged.
+/// Plans a path with a solver, and pulls after every move.
 pub(crate) fn run<S: WindowSolver<N>, const N: usize>(
     solver: S,
     path: &Toolpath<N>,
     limits: Limits<N>,
 ) -> (Plan<N>, WindowTally) {
-    let mut planner = TimeOptimal::with_solver(solver, path.start(), &Settings::new(limits));
+    run_with(solver, path, &Settings::new(limits))
+}
+
+/// The same with all settings.
+pub(crate) fn run_with<S: WindowSolver<N>, const N: usize>(
+    solver: S,
+    path: &Toolpath<N>,
+    settings: &Settings<N>,
+) -> (Plan<N>, WindowTally) {
+    let mut planner = TimeOptimal::with_solver(solver, path.start(), settings);
     let mut plan = Plan::starting_at(path.start());
     for step in path.moves() {
         planner.push(step).unwrap();
