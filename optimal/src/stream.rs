@@ -12,7 +12,8 @@ use crate::window::horizon::Horizon;
 use crate::window::output::Event;
 use crate::window::{Follow, WindowSolver};
 use std::collections::VecDeque;
-use toolglide_kinematics::{Limits, Move, MoveRange, Path, Pause, Vector, WindowTally};
+use toolglide_kinematics::numeric::SHORTEST_LENGTH;
+use toolglide_kinematics::{Limits, Move, MoveRange, Path, PathSide, Pause, Vector, WindowTally};
 
 /// Events that are kept room for: those of a window and a few stops.
 const EVENTS: usize = 2048;
@@ -32,6 +33,8 @@ pub(crate) struct Stream<S, const N: usize> {
     /// Time that modes of vibration take to come to rest, s.
     silence: f64,
     joiner: SegmentMerger<N>,
+    /// Whether a move that stops is planned when the next is known: the side that it keeps depends on that.
+    looks_ahead: bool,
     horizon: Horizon<S, N>,
     position: Vector<N>,
     index: u32,
@@ -51,7 +54,9 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
             limits: settings.limits,
             fineness: settings.effort.fineness(),
             silence: settings.modes.settling_time(),
-            joiner: SegmentMerger::new(start),
+            joiner: SegmentMerger::new(start)
+                .joining_only_collinear(settings.side != PathSide::Both),
+            looks_ahead: settings.side == PathSide::Inside,
             horizon: Horizon::new(solver, start, settings),
             position: start,
             index: 0,
@@ -99,8 +104,26 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
             }
         }
         if next.stops() {
+            self.horizon.turn_to(self.direction_of_next());
             self.rest(None);
         }
+    }
+
+    /// Direction of the straight move that waits to be begun.
+    fn direction_of_next(&self) -> Option<Vector<N>> {
+        match self.waiting.front()?.path() {
+            Path::Line { end } => (end - self.position).try_normalize(SHORTEST_LENGTH),
+            _ => None,
+        }
+    }
+
+    /// Whether the next move stops in a corner that is not known yet.
+    fn misses_a_corner(&self) -> bool {
+        let next = self.waiting.front();
+        self.looks_ahead
+            && !self.finished
+            && self.waiting.len() < 2
+            && next.is_some_and(|next| next.stops() && matches!(next.path(), Path::Line { .. }))
     }
 
     /// No more moves come: the motion rests behind those that wait.
@@ -121,10 +144,13 @@ impl<S: WindowSolver<N>, const N: usize> Stream<S, N> {
         }
     }
 
-    /// Takes the next chord of the arc under way, or the next move; `false` when there is neither.
+    /// Takes the next chord of the arc under way, or the next move; `false` when there is neither, or more must be known.
     fn advance(&mut self) -> bool {
         if self.advance_arc() {
             return true;
+        }
+        if self.misses_a_corner() {
+            return false;
         }
         if let Some(next) = self.waiting.pop_front() {
             self.take(&next);

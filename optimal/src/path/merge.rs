@@ -9,12 +9,15 @@
 //! far side is near enough. Not here: motion.
 
 use crate::window::Follow;
-use toolglide_kinematics::numeric::{MIN_SHARE, SHORTEST_LENGTH};
+use toolglide_kinematics::numeric::{LENGTH_SLACK, MIN_SHARE, SHORTEST_LENGTH};
 use toolglide_kinematics::{MoveRange, Pause, Vector};
 
 /// Share of the tolerance that joining may use: the motion keeps three quarters of it for itself, and
 /// fine chords of a curve still become runs of some thirty.
 const RUN_SHARE: f64 = 0.25;
+
+/// Sine of a turn below which two moves are one line to the judge of sides, with a little room.
+const STRAIGHT: f64 = 5e-7;
 
 /// Most vertices of a run: bounds memory and the work a vertex.
 const MAX_JOINED: usize = 160;
@@ -68,6 +71,8 @@ pub(crate) struct SegmentMerger<const N: usize> {
     members: Vec<Vertex<N>>,
     deviation: f64,
     carried: Option<Carried<N>>,
+    /// Whether straight moves become one only where they go on along the same line.
+    collinear: bool,
 }
 
 impl<const N: usize> SegmentMerger<N> {
@@ -78,7 +83,15 @@ impl<const N: usize> SegmentMerger<N> {
             members: Vec::with_capacity(MAX_JOINED + 1),
             deviation: 0.0,
             carried: None,
+            collinear: false,
         }
+    }
+
+    /// The same, where `collinear` straight moves become one only if they go on along the same line: a side of each of
+    /// them is kept.
+    pub(crate) fn joining_only_collinear(mut self, collinear: bool) -> Self {
+        self.collinear = collinear;
+        self
     }
 
     /// Takes the next vertex; gives the run that it completes.
@@ -187,6 +200,17 @@ impl<const N: usize> SegmentMerger<N> {
         self.carried = Some(carried);
     }
 
+    /// Whether the move to `vertex` goes on along the line of the last member.
+    fn goes_straight_on(&self, vertex: &Vertex<N>) -> bool {
+        let Some((last, earlier)) = self.members.split_last() else {
+            return true;
+        };
+        let from = earlier.last().map_or(self.anchor, |member| member.point);
+        let (line, next) = (last.point - from, vertex.point - last.point);
+        let along = line.dot(&next) / line.norm_squared();
+        along > 0.0 && (next - line * along).norm() <= STRAIGHT * next.norm()
+    }
+
     /// Largest distance of the path from a line to `vertex`, with the largest way back along it, or
     /// `None` when it cannot be joined.
     fn deviation_with(&self, vertex: &Vertex<N>) -> Option<f64> {
@@ -201,7 +225,13 @@ impl<const N: usize> SegmentMerger<N> {
             tolerance = tolerance.min(member.tolerance);
             bulge = bulge.max(member.bulge);
         }
-        let budget = RUN_SHARE * tolerance - bulge;
+        let mut budget = RUN_SHARE * tolerance - bulge;
+        if self.collinear && (last.bulge <= 0.0 || vertex.bulge <= 0.0) {
+            if !self.goes_straight_on(vertex) {
+                return None;
+            }
+            budget = budget.min(LENGTH_SLACK - bulge);
+        }
         if budget <= 0.0 {
             return None;
         }
@@ -263,6 +293,16 @@ mod tests {
                 "no move is left out"
             );
         }
+    }
+
+    #[test]
+    fn where_a_side_is_kept_only_collinear_moves_become_one() {
+        let mut joiner = SegmentMerger::new(Vector::<2>::zeros()).joining_only_collinear(true);
+        assert_eq!(joiner.push(vertex(1.0, 0.0, 0)), None);
+        assert_eq!(joiner.push(vertex(3.0, 0.0, 1)), None);
+        let turned = joiner.push(vertex(3.1, 1e-6, 2));
+        assert_eq!(turned.map(|run| run.serves.last), Some(1));
+        assert!(joiner.push(vertex(3.2, 0.0, 3)).is_some());
     }
 
     #[test]

@@ -40,6 +40,9 @@ pub(crate) struct Span<const N: usize> {
     pub(crate) end: Vector<N>,
     pub(crate) direction: Vector<N>,
     pub(crate) length: f64,
+    /// Length of the line of which it is a part, and where it begins on that, mm.
+    pub(crate) line_length: f64,
+    pub(crate) from: f64,
     pub(crate) tube: f64,
     /// Largest radius of the balls at its start and at its end, mm.
     pub(crate) balls: [f64; 2],
@@ -183,6 +186,8 @@ fn whole<const N: usize>(run: &Segment<N>, limits: &Limits<N>, fineness: Finenes
         end: run.end,
         direction: run.direction,
         length: run.length,
+        line_length: run.length,
+        from: 0.0,
         tube: run.tube,
         balls: run.balls,
         curved: run.curved,
@@ -237,6 +242,7 @@ impl<const N: usize> Span<N> {
             start: place(run, from),
             end: place(run, to),
             length: to.min(run.length) - from,
+            from,
             // Where a line is only cut, the ball costs nothing: when it is passed is free.
             balls: [
                 if from > 0.0 { run.tube } else { run.balls[0] },

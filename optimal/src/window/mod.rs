@@ -44,6 +44,9 @@ pub struct Wall<const N: usize> {
     pub outward: Vector<N>,
     /// How far the motion may go there, mm.
     pub allowed: f64,
+    /// Between which distances along the line from the start of its segment the side must be kept, mm. A solver may keep
+    /// it wherever its half of the segment is.
+    pub between: [f64; 2],
 }
 
 /// An arc over a chord that the motion shall follow.

@@ -9,7 +9,7 @@
 mod hull;
 pub(crate) mod silence;
 
-use crate::window::{EndState, Window, WindowMotion, WindowSegment};
+use crate::window::{EndState, Wall, Window, WindowMotion, WindowSegment};
 use hull::{distance, hull, share_of};
 use toolglide_kinematics::Vector;
 use toolglide_kinematics::nalgebra::{Matrix3, Vector3};
@@ -195,6 +195,18 @@ fn close<const N: usize>(
     Ok(())
 }
 
+/// Whether the hull of some places reaches the part of a segment along which a side must be kept.
+fn is_beside<const N: usize>(
+    wall: &Wall<N>,
+    segment: &WindowSegment<N>,
+    places: &[Vector<N>],
+) -> bool {
+    let direction = (segment.end - segment.start).normalize();
+    let along = |place: &Vector<N>| direction.dot(&(place - segment.start));
+    let [from, to] = wall.between;
+    places.iter().any(|place| along(place) < to) && places.iter().any(|place| along(place) > from)
+}
+
 /// Looks at every limit in every interval.
 fn check<const N: usize>(window: &Window<'_, N>, motion: &WindowMotion<N>) -> Result<(), Refused> {
     let limits = window.limits;
@@ -254,15 +266,16 @@ fn check<const N: usize>(window: &Window<'_, N>, motion: &WindowMotion<N>) -> Re
                 (distance(segment, place) - room) / segment.tolerance
             }),
         )?;
-        let half = usize::from(2 * (segment.steps - 1 - left_in_segment) >= segment.steps);
-        if let Some(wall) = &segment.walls[half] {
-            exceeds(
-                "side",
-                hull(places, MAX_HALVINGS, &|place| {
-                    let beyond = wall.outward.dot(&(place - segment.start)) - wall.allowed;
-                    1.0 + (beyond - WALL_SLACK) / segment.tolerance
-                }),
-            )?;
+        for wall in segment.walls.iter().flatten() {
+            if is_beside(wall, segment, &places) {
+                exceeds(
+                    "side",
+                    hull(places, MAX_HALVINGS, &|place| {
+                        let beyond = wall.outward.dot(&(place - segment.start)) - wall.allowed;
+                        1.0 + (beyond - WALL_SLACK) / segment.tolerance
+                    }),
+                )?;
+            }
         }
         if left_in_segment == 0
             && let Some(ball) = segment.corner_tolerance

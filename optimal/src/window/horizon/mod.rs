@@ -9,6 +9,7 @@
 //! every line up to the next goal is travelled from rest to rest. Not here: one window, see [`attempt`].
 
 mod attempt;
+mod sides;
 mod travel;
 
 use crate::path::spans::{Span, weakest};
@@ -19,7 +20,7 @@ use crate::window::output::Event;
 use crate::window::shaped_line::Shaper;
 use crate::window::straight_line;
 use crate::window::swings::Swings;
-use crate::window::{EndState, Wall, WindowMotion, WindowSegment, WindowSolver};
+use crate::window::{EndState, WindowMotion, WindowSegment, WindowSolver};
 use std::collections::VecDeque;
 use toolglide_kinematics::{Limits, PathSide, Vector, WindowTally};
 
@@ -65,9 +66,6 @@ const SILENT_PERIODS: f64 = 1.4;
 
 /// Fewest intervals of a window that ends silent: beyond those for the end, so many for each condition of an axis.
 const SILENT_STEPS: usize = 24;
-
-/// Sine of a turn below which there is no corner.
-const STRAIGHT: f64 = 1e-6;
 
 /// Share of every limit that is kept back from the solver, which meets them to its own precision only.
 const MARGIN: f64 = 2e-4;
@@ -118,8 +116,10 @@ pub(crate) struct Horizon<S, const N: usize> {
     silent_goal: bool,
     side: PathSide,
     overshoot: f64,
-    /// Direction of the last span that was handed out, where the motion did not rest behind it.
+    /// Direction of the last line that was handed out to its end.
     pub(super) direction_before: Option<Vector<N>>,
+    /// Direction of the line behind the next rest.
+    direction_after: Option<Vector<N>>,
 }
 
 fn motion_for<const N: usize>() -> WindowMotion<N> {
@@ -174,6 +174,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             side: settings.side,
             overshoot: settings.overshoot,
             direction_before: None,
+            direction_after: None,
         }
     }
 
@@ -190,6 +191,12 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// The motion rests at the end of the last span, `end`.
     pub(crate) fn rest(&mut self, end: Vector<N>) {
         self.close(EndState::rest(end));
+        self.direction_after = None;
+    }
+
+    /// Behind the next rest the path goes on in a direction.
+    pub(crate) fn turn_to(&mut self, direction: Option<Vector<N>>) {
+        self.direction_after = direction;
     }
 
     fn close(&mut self, goal: EndState<N>) {
@@ -370,36 +377,6 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
         } else {
             1.0
         }
-    }
-
-    /// Sides that a span keeps over its two halves.
-    pub(super) fn walls(&self, index: usize) -> [Option<Wall<N>>; 2] {
-        let span = &self.spans[index];
-        if self.side == PathSide::Both || span.curved {
-            return [None; 2];
-        }
-        let allowed = self.overshoot;
-        if let Some(outward) = self.side.across(&span.direction) {
-            return [Some(Wall { outward, allowed }); 2];
-        }
-        if self.side != PathSide::Inside {
-            return [None; 2];
-        }
-        let before = index
-            .checked_sub(1)
-            .map_or(self.direction_before, |before| {
-                self.spans.get(before).map(|span| span.direction)
-            });
-        let next = self.spans.get(index + 1).map(|span| span.direction);
-        [before.map(|other| -other), next].map(|other| {
-            let other = other?;
-            let inside = other - span.direction * span.direction.dot(&other);
-            let sine = inside.norm();
-            (sine > STRAIGHT).then(|| Wall {
-                outward: inside / -sine,
-                allowed,
-            })
-        })
     }
 
     /// Where a window of the first `count` spans ends: at rest, or at the goal.

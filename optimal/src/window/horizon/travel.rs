@@ -103,10 +103,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
     /// Hands out the plan of the first `count` spans.
     pub(super) fn commit(&mut self, count: usize) {
         let mut node = 0;
-        let last = self
-            .spans
-            .get(count.wrapping_sub(1))
-            .map(|span| span.direction);
+        self.leave_behind(count);
         for (span, duration) in self.spans.drain(..count).zip(&self.current.durations) {
             self.credit.earn(*duration);
             let interval = duration / steps(span.steps);
@@ -125,9 +122,6 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
                 let piece = Piece::new(&start, interval, end, span.serves);
                 self.events.push_back(Event::Piece(piece));
             }
-        }
-        if let Some(last) = last {
-            self.direction_before = Some(last);
         }
         self.start = self.current.states[node];
         self.planned -= count;
@@ -165,6 +159,7 @@ impl<S: WindowSolver<N>, const N: usize> Horizon<S, N> {
             stop
         };
         self.start = end;
+        self.leave_behind(count);
         for span in self.spans.drain(..count) {
             // Others would not stop here.
             self.credit.earn(span.length / span.limits.velocity);
