@@ -10,6 +10,7 @@ use crate::short_segments::Continuation;
 use crate::short_segments::curve::{Control, Curve};
 use crate::short_segments::feed_profile::{Filter, SwitchState};
 pub(super) use check::Excess;
+use toolglide_kinematics::numeric::LIMIT_SLACK;
 use toolglide_kinematics::{MoveRange, Piece, Sample, Vector};
 
 /// Change of the progress from step to step that is nothing but rounding, relative.
@@ -222,8 +223,11 @@ impl<const N: usize> Spline<N> {
         let same = around
             .windows(2)
             .all(|pair| (pair[1] - pair[0] - step).abs() <= ALIKE * step);
+        // Far from zero the velocities of pieces differ by the rounding of their points: each is looked at by itself.
+        let rounding = 4.0 * f64::EPSILON * self.controls[index].point.amax();
+        let near = rounding <= LIMIT_SLACK * step;
         // What is left of rounding is cut off.
-        same.then(|| {
+        (same && near).then(|| {
             (
                 curve.legs()[from].serves.last,
                 step.to_bits() >> ROUNDING_BITS,
