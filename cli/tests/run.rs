@@ -16,7 +16,7 @@ const EVENTS: &str = "t_s,command,value\n\
     2.6,forward,\n\
     3.0,rapid,0.25\n\
     3.1,feed,2\n\
-    3.6,stop-at-block-end,\n\
+    3.4,stop-at-block-end,\n\
     4.6,resume,\n\
     5.0,silence,0.8\n";
 

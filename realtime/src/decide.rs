@@ -404,7 +404,8 @@ impl<const N: usize> Driver<N> {
     }
 
     /// The rate at which a rest may be left at once: the one wanted, as far as the caps allow; `None` where none may.
-    pub(crate) fn start_rate(&mut self, x: &State, aim: &Aim) -> Option<f64> {
+    /// It does not change for a time `left` of the present step, behind which the stored way begins.
+    pub(crate) fn start_rate(&mut self, x: &State, aim: &Aim, left: f64) -> Option<f64> {
         let safe = self.safe_rate(x, &aim.caps, aim.c);
         let side = 1.0_f64.copysign(aim.c);
         let lowest = aim.c.abs().min(safe.0);
@@ -422,7 +423,7 @@ impl<const N: usize> Driver<N> {
                 },
                 ..*x
             };
-            if rate > 0.0 && self.accept(&start, course, &aim.caps, safe, x) {
+            if rate > 0.0 && self.starts(&start, left, course, &aim.caps, safe) {
                 break;
             }
             if rate <= lowest {
@@ -433,5 +434,28 @@ impl<const N: usize> Driver<N> {
         let rate = rate.copysign(aim.c);
         self.proven = aim.caps;
         Some(rate)
+    }
+
+    /// Whether the rate of a start may last for a time, and there is a way out of the state behind it.
+    fn starts(
+        &mut self,
+        start: &State,
+        left: f64,
+        course: Course,
+        caps: &Caps,
+        safe: (f64, f64),
+    ) -> bool {
+        if left <= 0.0 {
+            return self.accept(start, course, caps, safe, start);
+        }
+        let some = (!caps.open()).then_some(caps);
+        match self.bounds.steady(&self.track, start, left, some) {
+            Some(reached) if reached.rest => {
+                self.backup.settle_at(0.0);
+                true
+            }
+            Some(reached) => self.accept(&reached.state, course, caps, safe, start),
+            None => false,
+        }
     }
 }

@@ -162,7 +162,7 @@ impl<const N: usize> Executor<N> {
             rate: Rate { r: 0.0, s: 0.0 },
             ..self.state
         };
-        if begin <= 0.0 && full && self.driver.start_rate(&x, &aim) == Some(aim.c) {
+        if begin <= 0.0 && full && self.driver.start_rate(&x, &aim, 0.0) == Some(aim.c) {
             // At full rate nothing changes at either end of a dwell.
             self.free = false;
             self.state.rate = Rate { r: aim.c, s: 0.0 };
@@ -204,7 +204,9 @@ impl<const N: usize> Executor<N> {
             rate: Rate { r: 0.0, s: 0.0 },
             ..self.state
         };
-        let Some(rate) = self.driver.start_rate(&x, &aim) else {
+        // A step that begins here is decided; what is left of one keeps the rate.
+        let drift = if begin > 0.0 { left } else { 0.0 };
+        let Some(rate) = self.driver.start_rate(&x, &aim, drift) else {
             return self.stand(begin, left);
         };
         self.free = false;

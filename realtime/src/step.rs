@@ -151,6 +151,20 @@ impl<const N: usize> Bounds<N> {
         walk(track, x, u, h, |_, _, _| true)
     }
 
+    /// Where a rate that does not change leads in a time when it keeps the caps; the limits hold, because the plan keeps
+    /// them.
+    pub(crate) fn steady(
+        &self,
+        track: &Track<N>,
+        x: &State,
+        h: f64,
+        caps: Option<&Caps>,
+    ) -> Option<Reached> {
+        walk(track, x, 0.0, h, |entry, from, to| {
+            keeps_caps(entry, from, to, caps)
+        })
+    }
+
     /// Whether a part of a step keeps the limits.
     #[inline]
     fn part(&self, e: &Entry<N>, u: f64, from: &Instant, to: &Instant, worst: Worst) -> bool {

@@ -265,13 +265,41 @@ fn the_seeds_that_once_failed() {
     without_commands(7_982_555_312_887_591_375).unwrap();
     operate::<1>(115_266_441_762_623_357, OverrideKind::Uniform).unwrap();
     operate::<6>(3_249_910_694_583_042_938, OverrideKind::Uniform).unwrap();
+    operate::<3>(10_275_785_855_688_519_271, OverrideKind::Uniform).unwrap();
+    operate::<2>(5_624_807_737_808_150_784, OverrideKind::Capped).unwrap();
 }
 
 #[test]
-#[ignore = "jerk is 1.16 and 1.0015 of its limit for a step; README lists it under the limits of today"]
-fn the_seeds_that_still_fail() {
-    operate::<3>(10_275_785_855_688_519_271, OverrideKind::Uniform).unwrap();
-    operate::<2>(5_624_807_737_808_150_784, OverrideKind::Capped).unwrap();
+fn a_start_between_two_steps_keeps_every_limit_when_slower_blocks_follow() {
+    let reserve = Reserve::new(0.01).unwrap();
+    let plan = limits::<3>().reserved(reserve).unwrap();
+    for round in 1..100_u32 {
+        let mut motion = Motion::new(plan);
+        motion.dwell(0.01 + 1e-5 * f64::from(round));
+        motion.next_block();
+        motion.wander(&mut Random::new(u64::from(round)), 60);
+        motion.stop();
+        let settings = Settings::new(limits(), period())
+            .with_reserve(reserve)
+            .with_greatest_override(1.0, OverrideKind::Uniform)
+            .unwrap()
+            .with_room(512, 64);
+        let mut run = Run::new(&settings, limits());
+        run.executor.command().feed(0.3).unwrap();
+        for (index, piece) in motion.pieces.iter().enumerate() {
+            let terms = if index < 2 {
+                Terms::rapid()
+            } else {
+                Terms::feed(100.0)
+            };
+            run.executor.feed(piece, terms).unwrap();
+            run.judge.expect(piece);
+        }
+        for _ in 0..1000 {
+            run.tick();
+        }
+        run.check().unwrap();
+    }
 }
 
 fn limits_of_locked() -> Limits<2> {
