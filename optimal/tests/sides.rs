@@ -103,6 +103,21 @@ fn sides_are_kept_around_stops_and_along_short_moves_that_go_nearly_straight_on(
 }
 
 #[test]
+fn the_inner_side_of_random_corners_costs_less_than_a_sixth() {
+    let mut total = [0.0; 2];
+    for (seed, length) in [(2, 3.0), (3, 3.0), (4, 10.0), (5, 10.0)] {
+        for stops in [false, true] {
+            let path = zigzag(seed, length, stops);
+            for (sum, side) in total.iter_mut().zip([PathSide::Both, PathSide::Inside]) {
+                *sum += planned(&path, side, 0.0).0.duration();
+            }
+        }
+    }
+    let [free, kept] = total;
+    assert!(kept < 7.0 / 6.0 * free, "{kept} s, {free} s");
+}
+
+#[test]
 fn when_pieces_are_pulled_makes_no_difference_where_a_stop_waits_for_the_next_corner() {
     let path = zigzag(7, 3.0, true);
     let (motion, _) = planned(&path, PathSide::Inside, 0.0);

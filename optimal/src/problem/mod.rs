@@ -169,8 +169,11 @@ impl<const N: usize> Problem<N> {
         }
     }
 
-    /// Bends the tubes of arcs that are followed to where the motion is.
+    /// Bends the tubes of arcs that are followed to where the motion is, and finds the halves of lines there.
     pub(crate) fn set_places(&mut self, states: &[State<N>]) {
+        for track in &mut self.tracks {
+            track.find_half(states);
+        }
         for (node, (heights, state)) in self.heights.iter_mut().zip(states).enumerate() {
             let height = |interval: usize, sign: f64| {
                 let track = &self.tracks[self.segment_of[interval]];

@@ -20,8 +20,10 @@ pub(super) struct Track<const N: usize> {
     pub(super) tube: Tube<N>,
     /// From the chord to the arc that is followed, at the middle, mm; zero elsewhere.
     pub(super) sagitta: Vector<N>,
-    /// The side that is kept over either half.
+    /// The side that is kept over either half of its length.
     pub(super) walls: [Option<(Vector<N>, f64)>; 2],
+    /// Intervals over the first half.
+    half: usize,
     pub(super) corner: Option<Disc<N>>,
     pub(super) feed: Disc<N>,
     /// The same in its first and in its last interval.
@@ -80,6 +82,7 @@ impl<const N: usize> Problem<N> {
             walls: segment
                 .walls
                 .map(|wall| wall.map(|wall| (wall.outward / WALL, wall.allowed / WALL))),
+            half: segment.steps.div_ceil(2),
             corner: corner.filter(|_| next.is_some()).map(|tolerance| Disc {
                 center: segment.end - self.origin,
                 by_radius: 1.0 / tolerance,
@@ -125,7 +128,19 @@ impl<const N: usize> Track<N> {
     /// The side that is kept in an interval.
     #[inline(always)]
     pub(super) fn wall(&self, interval: usize) -> Option<(Vector<N>, f64)> {
-        self.walls[usize::from(2 * interval >= self.steps)]
+        self.walls[usize::from(interval >= self.half)]
+    }
+
+    /// Finds how many intervals the first half of the length takes in a motion.
+    pub(super) fn find_half(&mut self, states: &[State<N>]) {
+        let along = |state: &State<N>| self.tube.direction.dot(&(state[0] - self.tube.start));
+        let nodes = states.iter().skip(self.first);
+        let ends = nodes.clone().skip(1);
+        self.half = nodes
+            .zip(ends)
+            .take(self.steps)
+            .take_while(|(from, to)| along(from) + along(to) < self.tube.length)
+            .count();
     }
 
     /// How far the arc over a chord is from it where the Bezier point `ahead` (s) of a node's velocity lies, in

@@ -33,7 +33,7 @@ pub struct WindowSegment<const N: usize> {
     pub steps: usize,
     /// The arc of which this is a chord, where the motion shall follow it; `None` where all of the tube serves.
     pub follow: Option<Follow<N>>,
-    /// How far the motion may leave the line on one side, over its first and over its second half.
+    /// How far the motion may leave the line on one side, over the first and over the second half of its length.
     pub walls: [Option<Wall<N>>; 2],
 }
 
