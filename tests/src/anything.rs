@@ -134,6 +134,19 @@ pub struct Tally {
     pub lasting: f64,
 }
 
+/// Longest path at its feedrates that `optimal` plans, s.
+const LONGEST: f64 = 60.0;
+
+/// How long a path takes at its feedrates, s.
+fn at_feedrate<const N: usize>(path: &Toolpath<N>) -> f64 {
+    let mut at = path.start();
+    path.moves().iter().fold(0.0, |time, step| {
+        let length = step.length(at);
+        at = step.end(at);
+        time + length / step.feedrate().speed()
+    })
+}
+
 /// Draws limits and a path in one to three axes, plans them by every planner whose name is wanted, and has each
 /// plan judged.
 ///
@@ -199,7 +212,8 @@ fn try_axes<const N: usize>(dice: &mut Dice<'_>, wanted: &dyn Fn(&str) -> bool) 
             planned(method.name(), &mut planner);
         }
     }
-    if dice.one_in(4) {
+    // What `optimal` may spend grows with the motion: hours of it would take an hour.
+    if dice.one_in(4) && at_feedrate(&path) <= LONGEST {
         let settings = toolglide_optimal::Settings::new(limits);
         planned("optimal", &mut TimeOptimal::new(path.start(), &settings));
     }
