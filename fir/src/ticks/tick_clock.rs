@@ -132,7 +132,9 @@ mod tests {
                 a = a.max((v1 - v0).abs() / (10.0 * h));
                 j = j.max((v2 - 2.0 * v1 + v0).abs() / (100.0 * h * h));
             }
-            let [x, y] = path[k].map(|unit| unit as f64 / MM as f64);
+        }
+        for place in &path[1..path.len() - 40] {
+            let [x, y] = place.map(|unit| unit as f64 / MM as f64);
             off = off.max(y.abs().min((10.0 - x).abs()));
         }
         (a, j, off, path)
